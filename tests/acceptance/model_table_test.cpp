@@ -4,7 +4,7 @@
 #include "tests/acceptance/dense_solution.hpp"
 #include "tests/acceptance/model_table.hpp"
 #include "tests/support/catch.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/training/data/recorded_data.hpp"
 #include "tools/training/model_training.hpp"
 
@@ -174,7 +174,7 @@ class Row {
     TrainingData data_;
     DenseRegression regression_;
     RowList rows_;
-    std::unique_ptr<HostEstimator> estimator_;
+    std::unique_ptr<RuntimeEstimator> estimator_;
     Disagreement worst_;
 };
 

@@ -14,7 +14,7 @@ std::string at_columns(const std::string& what, int columns) {
 void append_size(std::vector<BenchTarget>& targets, const TickBench& bench, int columns) {
     const TickResult* ours = find_ours(bench, "float", columns);
     const TickResult* fastest = fastest_peer(bench, "float", columns);
-    const TickResult* cholesky = fastest_of(bench, Contender::Kind::cholesky, "float", columns);
+    const TickResult* cholesky = fastest_of(bench, BenchLearner::Kind::cholesky, "float", columns);
     if (ours == nullptr || fastest == nullptr || cholesky == nullptr) {
         return;
     }
@@ -22,7 +22,7 @@ void append_size(std::vector<BenchTarget>& targets, const TickBench& bench, int 
                        fastest->times.median / ours->times.median, 2, false});
     targets.push_back({at_columns("times faster than Eigen's Cholesky route", columns),
                        cholesky->times.median / ours->times.median, 8, false});
-    if (const TickResult* gurls = fastest_of(bench, Contender::Kind::gurls, "double", columns)) {
+    if (const TickResult* gurls = fastest_of(bench, BenchLearner::Kind::gurls, "double", columns)) {
         targets.push_back({at_columns("times faster than " + gurls->contender + " (double)", columns),
                            gurls->times.median / ours->times.median, 30, false});
     }

@@ -37,7 +37,7 @@ BenchOptions quick_options(BenchOptions options) {
 
 bool all_of_ours_right(const TickBench& bench) {
     return std::ranges::all_of(
-        bench.ticks, [](const TickResult& one) { return one.kind != Contender::Kind::ours || one.right; });
+        bench.ticks, [](const TickResult& one) { return one.kind != BenchLearner::Kind::ours || one.right; });
 }
 
 int run(const BenchCommandOptions& options) {

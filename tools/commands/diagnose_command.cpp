@@ -76,7 +76,7 @@ DiagnosisWork run_diagnosis(const Robot& robot, const std::vector<Recording>& re
 }
 
 /// Makes the model from the original recordings, with their gaps, instead of the joined one.
-std::optional<TrainedModel> make_model(const DiagnosisWork& work, const Extension& extension,
+std::optional<TrainedModel> make_model(const DiagnosisWork& work, const ModelExtension& extension,
                                        const std::vector<Recording>& recordings) {
     const Progress progress("building the extended model", 0);
     return answered(work) ? std::optional(extended_model(extension, recordings)) : std::nullopt;
@@ -92,7 +92,7 @@ void for_each_export(const DiagnoseOptions& options, const Use& use) {
     }
 }
 
-void add_exports(const DiagnoseOptions& options, const Extension& extension, FileSet& files) {
+void add_exports(const DiagnoseOptions& options, const ModelExtension& extension, FileSet& files) {
     const RobotExport corrected = options.formats.empty() ? RobotExport{} : corrected_robot(extension);
     for_each_export(options, [&](const RobotFormat& format, const std::filesystem::path& file) {
         files.add(file, format.text(corrected));
@@ -144,7 +144,7 @@ int run(const DiagnoseOptions& options) {
     const std::vector<Recording> recordings = options.recordings.read(columns_for(robot, outputs));
     check_folders(options);
     const DiagnosisWork work = run_diagnosis(robot, recordings, options, outputs);
-    const Extension extension = answered(work) ? extension_of(work) : Extension{};
+    const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
     const std::optional<TrainedModel> model = make_model(work, extension, recordings);
     const OnlineView online = model ? online_view(work, extension, *model, recordings) : OnlineView{};
     const nlohmann::ordered_json findings = diagnosis_json(work.diagnosis);

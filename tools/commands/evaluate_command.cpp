@@ -24,8 +24,8 @@ struct EvaluateOptions {
 };
 
 EvaluationResults run_with_progress(const Plan& plan, const PlanData& data, const RunOptions& options) {
-    const std::size_t units = plan.cases.size() * plan.seeds.size();
-    Progress progress("evaluating, units done", units);
+    const std::size_t jobs = plan.cases.size() * plan.seeds.size();
+    Progress progress("evaluating, units done", jobs);
     return run_plan(plan, data, options, [&progress](double done) { progress.update_part(done); });
 }
 
@@ -36,15 +36,15 @@ int run(const EvaluateOptions& options) {
     EvaluationResults results = run_with_progress(plan, data, options.run);
     results.opponents = plan_opponents(plan, data);
     write_evaluation(options.run.folder, plan, data, results);
-    for (const FailedUnit& unit : results.failed) {
-        std::cerr << unit.case_name << ", draw " << unit.seed << ": " << unit.reason << '\n';
+    for (const FailedJob& job : results.failed) {
+        std::cerr << job.case_name << ", draw " << job.seed << ": " << job.reason << '\n';
     }
     output.print({{"schema", "dfdyn.evaluation/1"},
-                  {"done", results.units.size()},
+                  {"done", results.jobs.size()},
                   {"failed", results.failed.size()},
                   {"reused", results.reused},
                   {"folder", options.run.folder.string()}});
-    std::cout << results.units.size() << " of " << results.units.size() + results.failed.size()
+    std::cout << results.jobs.size() << " of " << results.jobs.size() + results.failed.size()
               << " cases x draws done (" << results.reused
               << " found from an earlier run): " << (options.run.folder / "report.html").string() << '\n';
     return results.failed.empty() ? 0 : 1;

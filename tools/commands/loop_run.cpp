@@ -118,7 +118,7 @@ void save_learned(const LoopOptions& options, const ControlLoop& loop, FileSet& 
 }
 
 /// Sources of torque in addition to the feedback and the nominal rigid body.
-struct Contender {
+struct BenchLearner {
     std::string name;
     bool observer = false;
     bool learned = false;
@@ -131,9 +131,9 @@ bool has_observer(const LoopOptions& options) {
 }
 
 /// Returns the variants that a simulation compares, the complete one last.
-std::vector<Contender> contenders(const LoopOptions& options) {
+std::vector<BenchLearner> contenders(const LoopOptions& options) {
     const bool observer = has_observer(options);
-    std::vector<Contender> all{{"nominal", false, false}};
+    std::vector<BenchLearner> all{{"nominal", false, false}};
     if (observer) {
         all.push_back({"observer", true, false});
     }
@@ -152,7 +152,7 @@ struct SimulatedRun {
     nlohmann::ordered_json loop;
 };
 
-SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, const Contender& contender,
+SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, const BenchLearner& contender,
                           FileSet& files) {
     LoopLimits limits = options.limits;
     if (!contender.observer) {
@@ -195,7 +195,7 @@ int simulate(const LoopOptions& options) {
     nlohmann::ordered_json loops = nlohmann::ordered_json::array();
     bool stopped = false;
     FileSet files;
-    for (const Contender& contender : contenders(options)) {
+    for (const BenchLearner& contender : contenders(options)) {
         SimulatedRun run = simulate_run(parts, options, contender, files);
         stopped = stopped || !run.tracking;
         if (run.tracking) {

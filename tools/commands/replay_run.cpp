@@ -56,7 +56,7 @@ void check_usage(const ReplayOptions& options) {
 
 /// The estimator of the replay, with its contact detector and its monitor if there are any.
 struct Replaying {
-    std::unique_ptr<HostEstimator> estimator;
+    std::unique_ptr<RuntimeEstimator> estimator;
     MonitoredEstimator* monitor = nullptr;
     std::vector<RecordedChanges> changes;
     ContactEstimator* detector = nullptr;
@@ -144,7 +144,7 @@ std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::spa
 std::vector<ReplayedBus> replay_bus(const ReplayOptions& options, std::span<const TrainedModel> models,
                                     Replaying& replaying) {
     const BusDescription description = read_bus_description(options.bus);
-    HostEstimator& estimator = *replaying.estimator;
+    RuntimeEstimator& estimator = *replaying.estimator;
     std::vector<ReplayedBus> replayed;
     if (options.live()) {
         ReplayCsvFile csv(options.csv, models.front());

@@ -137,7 +137,7 @@ void diagnose_robot(const Arm& arm, const SplitRecordings& split, const StartOpt
     how.progress = [&](int) { progress->update(++rounds); };
     const DiagnosisWork work = diagnose(*arm.robot, joined_recording(split.training), how);
     progress.reset();
-    const Extension extension = answered(work) ? extension_of(work) : Extension{};
+    const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
     files["diagnosis.json"] = diagnosis_json(work.diagnosis).dump(2) + '\n';
     const std::string curves = "diagnosis_curves.csv";
     files["diagnosis.html"] =

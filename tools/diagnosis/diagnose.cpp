@@ -3,8 +3,8 @@
 
 #include "tools/diagnosis/verdict/extension_errors.hpp"
 #include "tools/diagnosis/verdict/findings.hpp"
-#include "tools/diagnosis/verdict/granted.hpp"
 #include "tools/diagnosis/verdict/joint_units.hpp"
+#include "tools/diagnosis/verdict/nuisance_estimates.hpp"
 #include "tools/diagnosis/verdict/plausibility.hpp"
 #include "tools/diagnosis/verdict/textbook_findings.hpp"
 #include "tools/diagnosis/verdict/unexplained.hpp"
@@ -83,30 +83,30 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.measured = signals->measured.outputs * work.torque_gains.cwiseInverse().asDiagonal();
     work.gains_known = options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
     if (suspect(work.diagnosis, suspicions_of_motion(*signals, work.measured, recording))) {
-        measure_from(work, 0, work.explanation); // without effects
+        measure_from(work, 0, work.fitted_effects); // without effects
         work.extended = signals->nominal;
         return work;
     }
-    ExplanationOptions how{work.gains_known, 1, options.progress, options.effects};
-    work.explanation = explain(*signals, work.measured, how);
-    work.rest = work.measured - signals->nominal - work.explanation.all(*signals);
-    work.pushes = standing_contacts(*signals, work.explanation, work.measured, work.rest);
-    for (const StandingContact& push : work.pushes) {
+    FitOptions how{work.gains_known, 1, options.progress, options.effects};
+    work.fitted_effects = find_effects(*signals, work.measured, how);
+    work.rest = work.measured - signals->nominal - work.fitted_effects.all(*signals);
+    work.pushes = standing_contacts(*signals, work.fitted_effects, work.measured, work.rest);
+    for (const StationaryContact& push : work.pushes) {
         work.rest.col(static_cast<Eigen::Index>(push.joint)) -= push.share;
     }
     work.diagnosis.findings =
-        findings_of(*signals, work.explanation, work.pushes, work.rest, work.diagnosis.output_names);
+        findings_of(*signals, work.fitted_effects, work.pushes, work.rest, work.diagnosis.output_names);
     if (options.measure) {
         measure_on_held_out(work, how);
     } else {
-        measure_from(work, 0, work.explanation);
+        measure_from(work, 0, work.fitted_effects);
     }
     name_by_least_squares(work);
-    work.diagnosis.granted = granted_quantities(*signals, work.explanation, work.torque_gains);
+    work.diagnosis.nuisance_estimates = estimate_nuisances(*signals, work.fitted_effects, work.torque_gains);
     use_units_of_joints(work.diagnosis, robot);
-    work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.explanation);
+    work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.fitted_effects);
     add_rest(work.diagnosis.unexplained,
-             unexplained_rest(*signals, work.measured, work.rest, work.explanation.noise));
+             unexplained_rest(*signals, work.measured, work.rest, work.fitted_effects.noise));
     doubt_useless_findings(work.diagnosis);
     return work;
 }

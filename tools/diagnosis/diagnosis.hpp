@@ -2,8 +2,8 @@
 #pragma once
 
 #include "tools/base/recording/recording.hpp"
-#include "tools/diagnosis/search/explanation.hpp"
-#include "tools/diagnosis/search/standing_contacts.hpp"
+#include "tools/diagnosis/search/fitted_effects.hpp"
+#include "tools/diagnosis/search/stationary_contacts.hpp"
 #include "tools/diagnosis/signals/raw_samples.hpp"
 #include "tools/diagnosis/signals/signals.hpp"
 #include "tools/robot/robot.hpp"
@@ -59,7 +59,7 @@ struct Finding {
 };
 
 /// A nuisance parameter with its estimate. It is not a finding.
-struct GrantedQuantity {
+struct NuisanceEstimate {
     std::string where;
     FoundParameter parameter;    ///< `mass`, or `torque_constant`
     std::optional<double> given; ///< value in the robot's file
@@ -97,7 +97,7 @@ struct Diagnosis {
     Eigen::VectorXd standing_share; ///< m: share of the rows of these errors that `moving_nrmse` excludes
     double heldout_from_s = 0, heldout_to_s = 0;
     std::vector<Finding> findings; ///< in descending order of gain
-    std::vector<GrantedQuantity> granted;
+    std::vector<NuisanceEstimate> nuisance_estimates;
     std::vector<Unexplained> unexplained;
 };
 
@@ -126,9 +126,9 @@ struct DiagnosisWork {
     std::shared_ptr<const DiagnosisSignals> signals; ///< null if the recording is unsuitable
     Eigen::MatrixXd measured;                        ///< T x m, as torques if currents were measured
     Eigen::VectorXd torque_gains; ///< per output: measured unit per N·m (N); 1 except for currents
-    Explanation explanation;
-    std::vector<StandingContact> pushes; ///< at stationary joints
-    RawSamples samples;                  ///< of the recording; without rows: errors are those of `measured`
+    FittedEffects fitted_effects;
+    std::vector<StationaryContact> pushes; ///< at stationary joints
+    RawSamples samples;                    ///< of the recording; without rows: errors are those of `measured`
     Eigen::MatrixXd rest; ///< T x m: residual after the explanation and the contacts, as `measured`
     Diagnosis diagnosis;
     /// T x m: outputs of the extended model of the whole recording, as `measured`; plain least squares beside
@@ -139,7 +139,7 @@ struct DiagnosisWork {
 
 /// Returns whether the recording could answer: there are effects to choose from, and a model can be made.
 inline bool answered(const DiagnosisWork& work) {
-    return work.signals != nullptr && !work.explanation.candidates.empty();
+    return work.signals != nullptr && !work.fitted_effects.candidates.empty();
 }
 
 /// Diagnoses a recording. Throws InputError if the recording is too short or does not match the robot.

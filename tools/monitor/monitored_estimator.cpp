@@ -2,7 +2,7 @@
 #include "tools/monitor/monitored_estimator.hpp"
 
 #include "dfdyn/monitor/centred_motion.hpp"
-#include "dfdyn/monitor/held_weights.hpp"
+#include "dfdyn/monitor/delayed_weights.hpp"
 #include "dfdyn/monitor/monitor.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
@@ -64,20 +64,20 @@ typename HostMonitor<Arm>::Constants monitor_constants(const MonitorSetup& setup
     constants.blocks_between_false_alarms = static_cast<float>(3600 * setup.false_alarm_hours * blocks_per_s);
     constants.report_blocks = static_cast<int>(std::lround(report_s * blocks_per_s));
     constants.longest_blocks = static_cast<int>(std::lround(longest_s * blocks_per_s));
-    constants.renewal_blocks = static_cast<int>(std::lround(renewal_s * blocks_per_s));
+    constants.refresh_blocks = static_cast<int>(std::lround(renewal_s * blocks_per_s));
     return constants;
 }
 
 template <class Arm>
 class Monitored final : public EstimatorDecorator<MonitoredEstimator> {
   public:
-    Monitored(std::unique_ptr<HostEstimator> watched, const MonitorSetup& setup)
+    Monitored(std::unique_ptr<RuntimeEstimator> watched, const MonitorSetup& setup)
         : EstimatorDecorator(std::move(watched)), setup_(setup), constants_(monitor_constants<Arm>(setup)),
           monitor_(constants_), held_(Extent<dynamic>{static_cast<int>(estimator().weight_count())}),
           held_prediction_(setup.outputs.size()), position_(setup.chain.joints.size()),
           output_(setup.outputs.size()), changes_(kept, monitor_.change()) {
         verdict_.moved.resize(setup.outputs.size());
-        renew();
+        refresh();
     }
 
     Tick tick(const MeasuredSample& sample, Budget budget) override {
@@ -87,12 +87,12 @@ class Monitored final : public EstimatorDecorator<MonitoredEstimator> {
         } else {
             monitor_.interrupt();
         }
-        renew();
+        refresh();
         return tick;
     }
     bool advance(Budget budget) override {
         const bool idle = estimator().advance(budget);
-        renew();
+        refresh();
         return idle;
     }
     void begin_recording() override {
@@ -167,17 +167,17 @@ class Monitored final : public EstimatorDecorator<MonitoredEstimator> {
     }
 
     /// Refreshes the delayed weights, if they are due and the estimator has nothing left to learn.
-    void renew() {
-        while (monitor_.renewal_due() && estimator().advance(Budget::predict_only())) {
-            estimator().copy_weights({held_.renew(), weight_count()});
-            monitor_.renewed();
+    void refresh() {
+        while (monitor_.refresh_due() && estimator().advance(Budget::predict_only())) {
+            estimator().copy_weights({held_.refresh(), weight_count()});
+            monitor_.refreshed();
         }
     }
 
     MonitorSetup setup_;
     typename HostMonitor<Arm>::Constants constants_;
     HostMonitor<Arm> monitor_;
-    HeldWeights<float, dynamic> held_;
+    DelayedWeights<float, dynamic> held_;
     std::vector<float> held_prediction_, position_, output_;
     std::vector<typename HostMonitor<Arm>::Change> changes_;
     std::size_t count_ = 0; ///< of all changes, including removed ones
@@ -212,7 +212,7 @@ MonitorSetup monitor_setup(const TrainedModel& model, const Robot* robot, const 
     return setup;
 }
 
-std::unique_ptr<MonitoredEstimator> monitored(std::unique_ptr<HostEstimator> estimator,
+std::unique_ptr<MonitoredEstimator> monitored(std::unique_ptr<RuntimeEstimator> estimator,
                                               const MonitorSetup& setup) {
     if (setup.chain.sensor) {
         return std::make_unique<Monitored<WrenchArm>>(std::move(estimator), setup);

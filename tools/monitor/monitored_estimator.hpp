@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/monitor/named_change.hpp"
 #include "tools/robot/robot.hpp"
 
@@ -36,7 +36,7 @@ struct Verdict {
 };
 
 /// An estimator with a monitor (dfdyn::Monitor).
-class MonitoredEstimator : public HostEstimator {
+class MonitoredEstimator : public RuntimeEstimator {
   public:
     /// Returns the newest 256 changes since the last `take_changes`.
     virtual std::vector<NamedChange> changes() const = 0;
@@ -47,7 +47,7 @@ class MonitoredEstimator : public HostEstimator {
     virtual const Verdict* take_verdict() = 0;
 };
 
-std::unique_ptr<MonitoredEstimator> monitored(std::unique_ptr<HostEstimator> estimator,
+std::unique_ptr<MonitoredEstimator> monitored(std::unique_ptr<RuntimeEstimator> estimator,
                                               const MonitorSetup& setup);
 
 } // namespace dfdyn::tools

@@ -18,7 +18,7 @@ constexpr double patience_s = 1.5; // a contact of 1 s, and other contradictions
 constexpr double no_limit = 1e30;
 
 /// Learns the rows from `first` to `last`, counted over all recordings, and returns their innovations.
-std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recording> recordings,
+std::vector<double> learn_rows(RuntimeEstimator& estimator, std::span<const Recording> recordings,
                                std::size_t first, std::size_t last) {
     std::vector<double> innovations;
     tick_rows(estimator, recordings, first, last, Budget::unlimited(),

@@ -9,7 +9,7 @@ namespace dfdyn::tools {
 HorizonError::HorizonError(std::size_t horizon, std::size_t outputs, std::size_t weights)
     : horizon_(horizon), outputs_(outputs), weight_count_(weights), prediction_(outputs) {}
 
-void HorizonError::add(const HostEstimator& estimator, std::span<const double> measured) {
+void HorizonError::add(const RuntimeEstimator& estimator, std::span<const double> measured) {
     for (Model& model : models_) {
         add_to(model, estimator, measured);
     }
@@ -32,7 +32,7 @@ void HorizonError::forget_before(std::size_t tick) {
     std::erase_if(indices_, [tick](const HorizonIndex& index) { return index.tick < tick; });
 }
 
-void HorizonError::add_to(Model& model, const HostEstimator& estimator, std::span<const double> measured) {
+void HorizonError::add_to(Model& model, const RuntimeEstimator& estimator, std::span<const double> measured) {
     estimator.predict_with(model.weights, prediction_);
     for (std::size_t k = 0; k < outputs_; ++k) {
         const double error = measured[k] - static_cast<double>(prediction_[k]);

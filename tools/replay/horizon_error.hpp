@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 
 #include <cstddef>
 #include <deque>
@@ -25,7 +25,7 @@ class HorizonError {
     HorizonError(std::size_t horizon, std::size_t outputs, std::size_t weights);
 
     /// Adds the sample of the last tick of `estimator`. Cost: T predictions and a copy of the weights.
-    void add(const HostEstimator& estimator, std::span<const double> measured);
+    void add(const RuntimeEstimator& estimator, std::span<const double> measured);
 
     /// Adds a tick without a prediction: no horizon extends across it.
     void skip();
@@ -42,7 +42,7 @@ class HorizonError {
         std::vector<double> error_square, output_square;
     };
 
-    void add_to(Model& model, const HostEstimator& estimator, std::span<const double> measured);
+    void add_to(Model& model, const RuntimeEstimator& estimator, std::span<const double> measured);
     void finish_oldest();
 
     std::size_t horizon_, outputs_, weight_count_;

@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 /// Runs `estimator` over the rows from `first` to `last` (not included), counted over all recordings. Calls
 /// `use(sample, tick, begins)` after each. `begins`: the row does not follow the one before.
 template <class Use>
-void tick_rows(HostEstimator& estimator, std::span<const Recording> recordings, std::size_t first,
+void tick_rows(RuntimeEstimator& estimator, std::span<const Recording> recordings, std::size_t first,
                std::size_t last, Budget budget, Use use) {
     std::size_t count = 0;
     bool begins = true;

@@ -57,7 +57,7 @@ std::string_view reason_name(const ReplayedRecording& replayed, std::size_t tick
     return bus != hal::Reason::ok ? hal::name(bus) : name(replayed.status[tick].reason());
 }
 
-Replayer::Replayer(HostEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon,
+Replayer::Replayer(RuntimeEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon,
                    const ReplayMemory& memory)
     : estimator_(estimator), outputs_(outputs), horizon_(horizon),
       errors_(std::max<std::size_t>(horizon, 1), outputs, estimator.weight_count()), memory_(memory) {
@@ -158,7 +158,7 @@ void Replayer::append(const Tick& tick, std::span<const double> output) {
     replayed_.duration_us.push_back(std::chrono::duration<double, std::micro>(tick.duration).count());
 }
 
-ReplayedRecording replay(HostEstimator& estimator, std::span<const TrainedModel> models,
+ReplayedRecording replay(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
                          const Recording& recording, std::size_t horizon,
                          const std::function<void(std::size_t)>& on_tick) {
     for (const TrainedModel& model : models) {

@@ -3,7 +3,7 @@
 
 #include "dfdyn/hal/reason.hpp"
 #include "tools/base/recording/recording.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/replay/horizon_error.hpp"
 
 #include <cstddef>
@@ -74,7 +74,7 @@ bool needs_derivatives(const TrainedModel& model);
 class Replayer {
   public:
     /// `horizon`: T of the index ε, 0 for none.
-    Replayer(HostEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon,
+    Replayer(RuntimeEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon,
              const ReplayMemory& memory = {});
 
     /// Runs one tick. `sample.output` is empty if it was not measured.
@@ -94,7 +94,7 @@ class Replayer {
     template <class Use>
     void for_each_column(Use use);
 
-    HostEstimator& estimator_;
+    RuntimeEstimator& estimator_;
     std::size_t outputs_, horizon_;
     HorizonError errors_;
     ReplayMemory memory_;
@@ -104,7 +104,7 @@ class Replayer {
 /// Runs `estimator` over `recording`, with learning; its learned state is kept from before. `on_tick`
 /// receives the number of completed ticks. `models`: those of `estimator`. `horizon`: T of the index ε, 0 for
 /// none. Throws InputError if the recording lacks the joints, outputs or derivatives of a model.
-ReplayedRecording replay(HostEstimator& estimator, std::span<const TrainedModel> models,
+ReplayedRecording replay(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
                          const Recording& recording, std::size_t horizon,
                          const std::function<void(std::size_t)>& on_tick);
 

@@ -37,11 +37,11 @@ void check_fit(const TrainedModel& model, const BusDescription& description) {
     }
 }
 
-void print(std::ostream& out, const char* what, const hal::Offenders& offenders) {
+void print(std::ostream& out, const char* what, const hal::UnexpectedFrames& offenders) {
     if (offenders.count() == 0) {
         return;
     }
-    const hal::Offenders::Offender& first = offenders.first();
+    const hal::UnexpectedFrames::Offender& first = offenders.first();
     out << "  " << offenders.count() << " x " << what << ": first " << identifier_text(first.id) << " with "
         << static_cast<int>(first.length) << " bytes";
     if (first.reason != hal::Reason::ok) {
@@ -58,7 +58,7 @@ void print(std::ostream& out, const char* what, std::uint64_t count) {
 
 } // namespace
 
-CanReplayer::CanReplayer(HostEstimator& estimator, std::span<const TrainedModel> models,
+CanReplayer::CanReplayer(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
                          const BusDescription& description, std::string source, std::size_t horizon,
                          const ReplayMemory& memory)
     : replayer_(estimator, std::move(source), models.front().outputs.names.size(), horizon, memory),
@@ -86,7 +86,7 @@ ReplayedBus CanReplayer::finish(const hal::BusCounters& counters) {
     return {replayer_.finish(), {sampler_.frames(), counters, watch.unknown, watch.rejected}};
 }
 
-ReplayedBus replay_log(HostEstimator& estimator, std::span<const TrainedModel> models,
+ReplayedBus replay_log(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
                        const BusDescription& description, const std::filesystem::path& log,
                        const std::string& log_interface, std::size_t horizon) {
     CanReplayer replayer(estimator, models, description, shown(log), horizon);

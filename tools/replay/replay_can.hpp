@@ -15,8 +15,8 @@ namespace dfdyn::tools {
 struct BusFigures {
     std::uint64_t frames = 0;
     hal::BusCounters counters;
-    hal::Offenders unknown;  ///< frames with identifiers that no device of the description has
-    hal::Offenders rejected; ///< frames with known identifiers and invalid content
+    hal::UnexpectedFrames unknown;  ///< frames with identifiers that no device of the description has
+    hal::UnexpectedFrames rejected; ///< frames with known identifiers and invalid content
 };
 
 struct ReplayedBus {
@@ -29,7 +29,7 @@ class CanReplayer {
   public:
     /// Throws InputError if joints, outputs or rate of the description differ from those of the models, or if
     /// a model needs measured derivatives. Keeps references to the estimator.
-    CanReplayer(HostEstimator& estimator, std::span<const TrainedModel> models,
+    CanReplayer(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
                 const BusDescription& description, std::string source, std::size_t horizon,
                 const ReplayMemory& memory = {});
     CanReplayer(const CanReplayer&) = delete;
@@ -50,7 +50,7 @@ class CanReplayer {
 /// Runs `estimator` over a candump log, with the log's time stamps. `log_interface`: the interface whose
 /// frames are used if the log has several. Throws InputError for a log that is malformed or without frames,
 /// and as CanReplayer.
-ReplayedBus replay_log(HostEstimator& estimator, std::span<const TrainedModel> models,
+ReplayedBus replay_log(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
                        const BusDescription& description, const std::filesystem::path& log,
                        const std::string& log_interface, std::size_t horizon);
 

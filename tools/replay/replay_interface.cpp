@@ -120,7 +120,7 @@ class Reception {
 
 } // namespace
 
-ReplayedBus replay_interface(HostEstimator& estimator, std::span<const TrainedModel> models,
+ReplayedBus replay_interface(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
                              const BusDescription& description, const InterfaceOptions& options,
                              std::size_t horizon, const std::atomic<bool>& stop) {
     try {

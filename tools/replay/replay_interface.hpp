@@ -19,7 +19,7 @@ struct InterfaceOptions {
 /// sleeps while no frame arrives. It requests the sensors' full scales while these are missing or uncertain.
 /// `replay_log` of the recorded log gives identical ticks, bit for bit, up to the last frame. Throws
 /// InputError if the interface cannot be opened or no frame was received, and as CanReplayer.
-ReplayedBus replay_interface(HostEstimator& estimator, std::span<const TrainedModel> models,
+ReplayedBus replay_interface(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
                              const BusDescription& description, const InterfaceOptions& options,
                              std::size_t horizon, const std::atomic<bool>& stop);
 

@@ -105,7 +105,7 @@ void print_values(std::ostream& out, const std::string& label, const std::vector
 
 } // namespace
 
-ReplaySummary summarise(std::span<const TrainedModel> models, const HostEstimator& estimator,
+ReplaySummary summarise(std::span<const TrainedModel> models, const RuntimeEstimator& estimator,
                         std::span<const ReplayedRecording> replayed, std::size_t horizon) {
     ReplaySummary summary;
     summary.outputs = models.front().outputs.names;

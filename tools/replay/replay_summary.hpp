@@ -44,7 +44,7 @@ struct ReplaySummary {
 inline constexpr double transient_s = 30;
 
 /// Computes the statistics of a replay; `models`: those of `estimator`.
-ReplaySummary summarise(std::span<const TrainedModel> models, const HostEstimator& estimator,
+ReplaySummary summarise(std::span<const TrainedModel> models, const RuntimeEstimator& estimator,
                         std::span<const ReplayedRecording> replayed, std::size_t horizon);
 
 /// Prints them as tables, with the compiler's flags next to the times.

@@ -7,7 +7,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/inputs/input_description.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/model/structure.hpp"
 
 #include <cstdio>

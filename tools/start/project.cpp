@@ -6,7 +6,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/model/header/model_header.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/start/embedded_files.hpp"
 

@@ -156,7 +156,7 @@ MatrixXd columns_of(const PhysicsModel& physics, const TrainingData& data, const
     return chosen_columns(*regressor, stored_motion(physics.motion, data, rows), choice);
 }
 
-JointStart joint_start_of(const TrainedModel& model, const PhysicsProblem& problem) {
+CombinedPrior combined_prior_of(const TrainedModel& model, const PhysicsProblem& problem) {
     const PhysicsModel& physics = *model.physics;
     const ParameterPrior prior =
         ParameterPrior::independent(static_cast<Index>(physics.selected.size()), physics.prior_variance);
@@ -250,7 +250,7 @@ void restart_model(TrainedModel& model, const PreparedTraining& prepared) {
     }
     PhysicsModel& physics = *model.physics;
     const MatrixXd columns = columns_of(physics, prepared.data, rows);
-    const JointStart start = joint_start_of(model, {model, prepared.data, rows, columns});
+    const CombinedPrior start = combined_prior_of(model, {model, prepared.data, rows, columns});
     model.start = start.kernel;
     physics.start = start_model(start.physics);
     physics.coupling = flattened(start.physics.coupling);

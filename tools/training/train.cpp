@@ -134,7 +134,7 @@ TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part
         setup.physics(setup.options.input, setup.rows.usable, choice)->evaluate(part.motion);
     const PhysicsProblem problem{model, setup.data, setup.rows.usable, columns};
     const std::optional<ParameterPrior> robot = knowledge_of(setup, choice, part.motion);
-    const JointStart start = [&] {
+    const CombinedPrior start = [&] {
         const auto p = static_cast<Index>(choice.columns.size());
         const ParameterPrior prior = robot ? *robot : ParameterPrior::independent(p, physics.prior_variance);
         if (structure.learns_parameters()) {

@@ -336,7 +336,7 @@ class Estimator {
         }
         fold(budget, noise_variance, status);
         if (at_once) {
-            extrapolate(regression_.last_ratios(ratio_.data()), estimate);
+            extrapolate(regression_.last_variance_ratios(ratio_.data()), estimate);
         }
         if (measured) {
             estimate.normalised_innovation_squared = innovation_square(estimate.prediction);

@@ -21,7 +21,7 @@ namespace dfdyn {
 ///
 /// Errors one step ahead mostly measure tracking. They do not show how a member would predict if it stopped
 /// learning. `learn` therefore also uses each member's prediction with its weights of 0.2 to 0.4 s ago
-/// (`HeldWeights`), and averages both squares. The variance decides where nothing is learned, on a motion
+/// (`DelayedWeights`), and averages both squares. The variance decides where nothing is learned, on a motion
 /// that was not seen before.
 ///
 /// The powers and a memory of 0.8 s were chosen on the UR5 recordings No5 and No6. Weights are in [0, 1] and

@@ -41,12 +41,12 @@ void use(const Estimator<Model>& estimator) {
     typename Model::Scalar weights[Model::outputs * Model::columns + Model::parameters];
     const auto& regression = estimator.regression();
     regression.variances(means);
-    regression.last_ratios(means);
+    regression.last_variance_ratios(means);
     regression.copy_weights(weights);
     regression.predict_with(weights, means);
     static_cast<void>(regression.idle() || regression.sample_pending());
     static_cast<void>(estimator.counters().ticks + name(Reason::gap)[0]);
-    if constexpr (requires { regression.learner().last_ratio(); }) {
+    if constexpr (requires { regression.learner().last_variance_ratio(); }) {
         regression.learner().predict(regression.columns(), means);
         static_cast<void>(regression.learner().variance(regression.columns()));
         static_cast<void>(regression.learner().parameter_variance(1));

@@ -34,15 +34,15 @@ struct Instants {
 
 /// The batch solution with forgetting once per sample: the weight of a row is λ^(samples since).
 BatchSolution batch(const Instants& instants, double lambda) {
-    Regression weighed = instants.regression;
+    Regression weighted = instants.regression;
     const int count = instants.count();
-    for (int row = 0; row < weighed.row_count(); ++row) {
+    for (int row = 0; row < weighted.row_count(); ++row) {
         const double root = std::pow(lambda, 0.5 * (count - 1 - row / instants.outputs));
-        weighed.rows.row(row) *= root;
-        weighed.targets.row(row) *= root;
+        weighted.rows.row(row) *= root;
+        weighted.targets.row(row) *= root;
     }
-    weighed.prior_variance /= std::pow(lambda, count - 1);
-    BatchSolution solution = solve_by_qr(weighed);
+    weighted.prior_variance /= std::pow(lambda, count - 1);
+    BatchSolution solution = solve_by_qr(weighted);
     solution.information_root *= std::sqrt(lambda);
     return solution;
 }
@@ -99,11 +99,11 @@ TEST_CASE("the rows of a sample are weighted by its noise") {
         with_prior(random_regression(engine, {40, parameters, 1}, Columns::independent), 10, 1);
     const LearnerConstants<double, parameters, 1> constants{1000, 1, &start_below_ceiling()};
     Shared learner(constants, {}, {2});
-    Regression weighed = regression;
+    Regression weighted = regression;
     for (int t = 0; t < 20; ++t) {
         const double noise_variance = 1 + 0.3 * t;
-        weighed.rows.middleRows(2 * t, 2) /= std::sqrt(noise_variance);
-        weighed.targets.middleRows(2 * t, 2) /= std::sqrt(noise_variance);
+        weighted.rows.middleRows(2 * t, 2) /= std::sqrt(noise_variance);
+        weighted.targets.middleRows(2 * t, 2) /= std::sqrt(noise_variance);
         const MatrixXd rows = regression.rows.middleRows(2 * t, 2).transpose();
         const VectorXd targets = regression.targets.middleRows(2 * t, 2);
         learner.begin(rows.data(), targets.data(), noise_variance);
@@ -111,7 +111,7 @@ TEST_CASE("the rows of a sample are weighted by its noise") {
         learner.advance(budget);
     }
     const Eigen::Map<const VectorXd> learned(learner.parameters(), parameters);
-    CHECK(relative_error(learned, solve_by_qr(weighed).weights) < 1e-9);
+    CHECK(relative_error(learned, solve_by_qr(weighted).weights) < 1e-9);
 }
 
 } // namespace common_parameters_test

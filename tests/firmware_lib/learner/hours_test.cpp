@@ -164,7 +164,7 @@ class Arm {
         learner_.begin(row.data(), &target);
         learner_.advance(budget);
         const auto innovation = static_cast<double>(target - mean);
-        innovation_squares_ += innovation * innovation / static_cast<double>(learner_.last_ratio());
+        innovation_squares_ += innovation * innovation / static_cast<double>(learner_.last_variance_ratio());
         ++learned_;
     }
 

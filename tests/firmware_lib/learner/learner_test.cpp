@@ -246,7 +246,8 @@ TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before learning"
         const double variance = learned.variance(row);
         learned.begin(row, VectorXd::Zero(2));
         learned.advance(Budget::unlimited());
-        CHECK(static_cast<double>(learned.learner().last_ratio()) == Approx(1 + variance).epsilon(1e-5));
+        CHECK(static_cast<double>(learned.learner().last_variance_ratio()) ==
+              Approx(1 + variance).epsilon(1e-5));
     }
 }
 

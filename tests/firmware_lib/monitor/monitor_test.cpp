@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/monitor/centred_motion.hpp"
-#include "dfdyn/monitor/held_weights.hpp"
+#include "dfdyn/monitor/delayed_weights.hpp"
 #include "dfdyn/monitor/monitor.hpp"
 
 #include "tests/firmware_lib/support/counted.hpp"
@@ -42,7 +42,7 @@ typename TestMonitor<Scalar>::Constants constants() {
     result.blocks_between_false_alarms = 360000;
     result.report_blocks = 20;
     result.longest_blocks = 200;
-    result.renewal_blocks = 30;
+    result.refresh_blocks = 30;
     return result;
 }
 
@@ -352,10 +352,10 @@ TEST_CASE("no tick of the monitor exceeds its declared cost", "[monitor]") {
 }
 
 TEST_CASE("held weights are between one and two periods old", "[monitor]") {
-    HeldWeights<float, 2> held({});
+    DelayedWeights<float, 2> held({});
     for (int period = 0; period < 5; ++period) {
         const auto now = static_cast<float>(10 + period);
-        std::fill_n(held.renew(), 2, now);
+        std::fill_n(held.refresh(), 2, now);
         CHECK(held.older()[0] == (period == 0 ? 0 : now - 1));
     }
 }

@@ -27,7 +27,7 @@ double force(double time_s) { return 100 * angle(time_s); } // so that a wrong i
 double difference(float a, double b) { return std::abs(static_cast<double>(a) - b); }
 double seconds(std::int64_t time_ns) { return 1e-9 * static_cast<double>(time_ns); }
 
-constexpr QualificationGate::Config at_once{.readings = 1, .zero_readings = 1};
+constexpr StartupGate::Config at_once{.readings = 1, .zero_readings = 1};
 constexpr std::int64_t force_latency_ns = 1200 * us;
 
 Arm make_arm(int output_bus) {
@@ -158,7 +158,7 @@ TEST_CASE("an arm whose joints measure their currents has one output per joint")
         value[0].effort = current_A;
         return arm.take(at_time(boards[board].encode(value).frame[0], stamp), stamp);
     };
-    using Kind = CurrentArm::Moment::Kind;
+    using Kind = CurrentArm::SampleTrigger::Kind;
     CHECK(send(0, 0.5, 2, ms).kind == Kind::none);
     const auto set = send(1, -0.5, -3, ms + 100 * us);
     CHECK(set.kind == Kind::set);

@@ -9,7 +9,7 @@ using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 
 using Arm = SampleAssembly<double, 2, Cia402Drive, 2, EffortOutput<2, 8>>;
-using Kind = Arm::Moment::Kind;
+using Kind = Arm::SampleTrigger::Kind;
 
 std::array<Cia402Drive, 2> two_drives() {
     Cia402Drive::Config first{.node = 1, .joint = 0, .effort_pdo = 0x380, .effort_length = 2};
@@ -36,7 +36,7 @@ TEST_CASE("at a SYNC the values measured at the one before are complete, and exa
     const std::array<Cia402Drive, 2> drives = two_drives();
     for (int cycle = 0; cycle < 20; ++cycle) {
         const std::int64_t sync_ns = cycle * 10 * ms;
-        const Arm::Moment moment = arm.take(at_time(Cia402Drive::encode_sync(), sync_ns), sync_ns);
+        const Arm::SampleTrigger moment = arm.take(at_time(Cia402Drive::encode_sync(), sync_ns), sync_ns);
         if (cycle == 0) {
             CHECK(moment.kind == Kind::none);
         } else {
@@ -126,9 +126,9 @@ TEST_CASE("a set is complete when all joints and the wrench are new, at the wren
             arm.bus.waiting.push_back(frame);
         }
         arm.bus.now = ArmOnBus::time_ns(arm.number) + 400 * us;
-        arm.assembly.drain(arm.bus, buffer, [&](const ArmOnBus::Assembly::Moment& moment) {
+        arm.assembly.drain(arm.bus, buffer, [&](const ArmOnBus::Assembly::SampleTrigger& moment) {
             ++sets;
-            CHECK(moment.kind == ArmOnBus::Assembly::Moment::Kind::set);
+            CHECK(moment.kind == ArmOnBus::Assembly::SampleTrigger::Kind::set);
             CHECK(moment.instant_ns == ArmOnBus::time_ns(arm.number) + 200 * us);
             const auto assembled = arm.assembly.assemble(moment.instant_ns, arm.bus.now);
             CHECK(assembled.valid());

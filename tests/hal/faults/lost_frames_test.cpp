@@ -125,8 +125,8 @@ TEST_CASE("a wrench that lost a half is not learned and the next one is") {
         CHECK(arm.run(10));
     }
     const hal::PairGate& pairing = arm.assembly.output().pairing();
-    CHECK(pairing.orphans(0) == 1);
-    CHECK(pairing.orphans(1) == 1);
+    CHECK(pairing.unpaired(0) == 1);
+    CHECK(pairing.unpaired(1) == 1);
 }
 
 TEST_CASE("a sensor that loses all its torque frames is never learned") {
@@ -175,7 +175,7 @@ TEST_CASE("F17: halves without their own time stamps are paired in their order")
                  })
                   .predicted);
     }
-    CHECK(arm.assembly.output().pairing().orphans(0) + arm.assembly.output().pairing().orphans(1) == 0);
+    CHECK(arm.assembly.output().pairing().unpaired(0) + arm.assembly.output().pairing().unpaired(1) == 0);
 }
 
 TEST_CASE("F18: frames that overtook each other are ordered by their time stamps") {

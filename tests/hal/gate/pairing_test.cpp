@@ -40,7 +40,7 @@ TEST_CASE("two halves of one wrench are paired") {
         CHECK(gate.second().data[0] == number);
     }
     CHECK(gate.pairs() == 10);
-    CHECK(gate.orphans(0) + gate.orphans(1) == 0);
+    CHECK(gate.unpaired(0) + gate.unpaired(1) == 0);
 }
 
 TEST_CASE("a lost second half costs one wrench") {
@@ -50,7 +50,7 @@ TEST_CASE("a lost second half costs one wrench") {
     CHECK(gate.orphan_ns() == half(0, 0).stamp_ns);
     CHECK(push(gate, 1, 1) == Result::paired);
     CHECK(gate.first().data[0] == 1);
-    CHECK(gate.orphans(0) == 1);
+    CHECK(gate.unpaired(0) == 1);
 }
 
 TEST_CASE("a lost first half costs one wrench") {
@@ -59,7 +59,7 @@ TEST_CASE("a lost first half costs one wrench") {
     CHECK(push(gate, 1, 0) == Result::orphaned); // the second half that waited is too old
     CHECK(gate.orphan_ns() == half(0, 1).stamp_ns);
     CHECK(push(gate, 1, 1) == Result::paired);
-    CHECK(gate.orphans(1) == 1);
+    CHECK(gate.unpaired(1) == 1);
 }
 
 TEST_CASE("halves of two wrenches never make one") {
@@ -76,7 +76,7 @@ TEST_CASE("a sensor all of whose second halves are lost gives no wrench") {
     for (int number = 0; number < 100; ++number) {
         CHECK(push(gate, number, 0) != Result::paired);
     }
-    CHECK(gate.orphans(0) == 99);
+    CHECK(gate.unpaired(0) == 99);
 }
 
 TEST_CASE("halves that overtook each other on the way are paired by their stamps") {
@@ -91,7 +91,7 @@ TEST_CASE("halves that were sent in the wrong order are not paired") {
         CHECK(gate.push(1, at_time(half(number, 1), 1000 * number * us)) != Result::paired);
         CHECK(gate.push(0, at_time(half(number, 0), (1000 * number + 130) * us)) != Result::paired);
     }
-    CHECK(gate.orphans(0) + gate.orphans(1) == 19);
+    CHECK(gate.unpaired(0) + gate.unpaired(1) == 19);
 }
 
 TEST_CASE("halves without stamps of their own are paired in their order") {

@@ -76,10 +76,10 @@ TEST_CASE("a target includes its limit and has a direction") {
 
 TEST_CASE("a wrong learner is shown without a time and is not compared") {
     BenchResults results;
-    results.ticks.ticks = {{"dfdyn", "float", Contender::Kind::ours, 100, 1e-6, true, {}},
-                           {"quick and wrong", "float", Contender::Kind::covariance, 100, 0.5, false, {}},
-                           {"slow", "float", Contender::Kind::cholesky, 100, 1e-5, true, {}},
-                           {"the paper's", "double", Contender::Kind::gurls, 100, 1e-12, true, {}}};
+    results.ticks.ticks = {{"dfdyn", "float", BenchLearner::Kind::ours, 100, 1e-6, true, {}},
+                           {"quick and wrong", "float", BenchLearner::Kind::covariance, 100, 0.5, false, {}},
+                           {"slow", "float", BenchLearner::Kind::cholesky, 100, 1e-5, true, {}},
+                           {"the paper's", "double", BenchLearner::Kind::gurls, 100, 1e-12, true, {}}};
     results.ticks.ticks[0].times.median = 1;
     results.ticks.ticks[1].times.median = 0.1;
     results.ticks.ticks[2].times.median = 9;
@@ -99,7 +99,7 @@ TEST_CASE("a wrong learner is shown without a time and is not compared") {
 TEST_CASE("the growth exponent is fitted from 200 columns on") {
     TickBench bench;
     for (const int columns : {100, 200, 400, 800}) {
-        TickResult one{"dfdyn", "float", Contender::Kind::ours, columns, 0, true, {}};
+        TickResult one{"dfdyn", "float", BenchLearner::Kind::ours, columns, 0, true, {}};
         one.times.median = columns == 100 ? 1e6 : 1e-4 * columns * columns;
         bench.ticks.push_back(one);
         bench.floors.push_back({"float", columns, {}});

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The order and the counts of measurements. No times are checked.
 #include "dfdyn/core/vector.hpp"
-#include "tools/bench/timing/floor.hpp"
 #include "tools/bench/timing/interleaved.hpp"
+#include "tools/bench/timing/machine_lower_bound.hpp"
 
 #include "tests/support/catch.hpp"
 
@@ -65,6 +65,6 @@ TEST_CASE("the arithmetic floor is 1.5 p^2 multiply-adds at the rate of the prob
     CHECK(arithmetic_floor_us(1000, "float", two_vectors) == Approx(4 * in_float));
     CHECK(arithmetic_floor_us(500, "double", two_vectors) ==
           Approx(in_float * dfdyn::detail::wide<float> / dfdyn::detail::wide<double>));
-    CHECK(Floor{3, 5}.total() == 5);
-    CHECK(Floor{5, 3}.total() == 5);
+    CHECK(MachineLowerBound{3, 5}.total() == 5);
+    CHECK(MachineLowerBound{5, 3}.total() == 5);
 }

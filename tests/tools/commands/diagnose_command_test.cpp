@@ -170,7 +170,7 @@ TEST_CASE("the extended model is more accurate than the nominal one from the fir
     tools::DiagnosisOptions options;
     options.measure = false;
     const tools::DiagnosisWork work = tools::diagnose(robot, recordings.front(), options);
-    const tools::Extension extension = tools::extension_of(work);
+    const tools::ModelExtension extension = tools::extension_of(work);
     REQUIRE_FALSE(extension.columns.empty());
     const tools::TrainedModel extended = tools::extended_model(extension, recordings);
     const double nominal =
@@ -225,9 +225,9 @@ TEST_CASE("currents with unknown torque constants in several recordings are diag
     REQUIRE(diagnosis["granted"].size() >= 2);
     const std::array constants{5.0, 3.0}; // of the scenario
     std::size_t joint = 0;
-    for (const json& granted : diagnosis["granted"]) {
-        if (granted["name"] == "torque_constant") {
-            CHECK(double(granted["value"]) == Approx(constants.at(joint++)).epsilon(0.1));
+    for (const json& nuisance_estimates : diagnosis["granted"]) {
+        if (nuisance_estimates["name"] == "torque_constant") {
+            CHECK(double(nuisance_estimates["value"]) == Approx(constants.at(joint++)).epsilon(0.1));
         }
     }
     CHECK(joint == 2);

@@ -114,8 +114,8 @@ TEST_CASE("a real arm's joint friction and wrist centre of mass are named and no
         }
     }
     CHECK(rubbing.size() >= 5);
-    REQUIRE(diagnosis.granted.size() >= 6);
-    for (const GrantedQuantity& one : diagnosis.granted) {
+    REQUIRE(diagnosis.nuisance_estimates.size() >= 6);
+    for (const NuisanceEstimate& one : diagnosis.nuisance_estimates) {
         INFO(one.where);
         CHECK(one.parameter.low > 0);
     }

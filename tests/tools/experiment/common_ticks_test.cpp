@@ -3,7 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/experiment/synthetic_units.hpp"
+#include "tests/tools/experiment/synthetic_jobs.hpp"
 
 #include <cmath>
 #include <limits>
@@ -83,27 +83,27 @@ TEST_CASE("ticks without a relative error because an output is zero are not scor
 
 TEST_CASE("errors of other ticks are dropped and missing errors of common ticks are infinite") {
     DFDYN_SEEDED_ENGINE(engine);
-    std::vector<UnitResult> units{unit_at("A", 1, 1, engine), unit_at("B", 1, 1, engine)};
-    units[0].error[1][2][6] = 0.5;
-    units[0].error[1][2][9] = std::nan("");
-    units[1].error[0][1][8] = infinite;
-    const std::vector<UnitResult> before = units;
-    keep_common_ticks(plan_with_windows(), data_of_three_subsets(), units);
-    for (std::size_t unit = 0; unit < 2; ++unit) {
+    std::vector<JobResult> jobs{unit_at("A", 1, 1, engine), unit_at("B", 1, 1, engine)};
+    jobs[0].error[1][2][6] = 0.5;
+    jobs[0].error[1][2][9] = std::nan("");
+    jobs[1].error[0][1][8] = infinite;
+    const std::vector<JobResult> before = jobs;
+    keep_common_ticks(plan_with_windows(), data_of_three_subsets(), jobs);
+    for (std::size_t job = 0; job < 2; ++job) {
         for (std::size_t tick = 0; tick < rows; ++tick) {
             for (std::size_t group = 0; group < 2; ++group) {
-                CAPTURE(unit, group, tick);
+                CAPTURE(job, group, tick);
                 const bool common = tick >= 7 && tick < rows - horizon;
-                const double error = units[unit].error[group][2][tick];
+                const double error = jobs[job].error[group][2][tick];
                 CHECK(std::isnan(error) == !common);
-                if (common && !(unit == 0 && group == 1 && tick == 9)) {
-                    CHECK(error == before[unit].error[group][2][tick]);
+                if (common && !(job == 0 && group == 1 && tick == 9)) {
+                    CHECK(error == before[job].error[group][2][tick]);
                 }
             }
         }
     }
-    CHECK(units[0].error[1][2][9] == infinite);
-    CHECK(units[1].error[0][1][8] == infinite);
+    CHECK(jobs[0].error[1][2][9] == infinite);
+    CHECK(jobs[1].error[0][1][8] == infinite);
 }
 
 } // namespace common_ticks_test

@@ -3,7 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/experiment/synthetic_units.hpp"
+#include "tests/tools/experiment/synthetic_jobs.hpp"
 
 #include <cmath>
 #include <limits>
@@ -15,23 +15,22 @@ using dfdyn::tests::two_case_plan;
 using dfdyn::tests::unit_at;
 
 /// Units in which the errors of A are `ratio` times those of B in each draw.
-std::vector<UnitResult> units_with(double ratio, std::size_t draws, std::mt19937_64& engine) {
-    std::vector<UnitResult> units;
+std::vector<JobResult> units_with(double ratio, std::size_t draws, std::mt19937_64& engine) {
+    std::vector<JobResult> jobs;
     for (std::size_t seed = 1; seed <= draws; ++seed) {
-        units.push_back(unit_at("A", seed, ratio * static_cast<double>(seed), engine));
-        units.push_back(unit_at("B", seed, static_cast<double>(seed), engine));
+        jobs.push_back(unit_at("A", seed, ratio * static_cast<double>(seed), engine));
+        jobs.push_back(unit_at("B", seed, static_cast<double>(seed), engine));
     }
-    return units;
+    return jobs;
 }
 
 const double infinite = std::numeric_limits<double>::infinity();
 
 /// Makes one tick of the first group of `name` infinite in every subset of the draws up to `last`.
-void lose(std::vector<UnitResult>& units, const std::string& name, std::size_t tick,
-          std::uint64_t last = 100) {
-    for (UnitResult& unit : units) {
-        for (std::vector<double>& subset : unit.error[0]) {
-            subset[tick] = unit.case_name == name && unit.seed <= last ? infinite : subset[tick];
+void lose(std::vector<JobResult>& jobs, const std::string& name, std::size_t tick, std::uint64_t last = 100) {
+    for (JobResult& job : jobs) {
+        for (std::vector<double>& subset : job.error[0]) {
+            subset[tick] = job.case_name == name && job.seed <= last ? infinite : subset[tick];
         }
     }
 }
@@ -41,8 +40,8 @@ const Comparison a_is_less{"A", "B", "force", Phase::steady, 0};
 TEST_CASE("a clear difference in every draw holds and the opposite claim is contradicted") {
     DFDYN_SEEDED_ENGINE(engine);
     const Plan plan = two_case_plan(10);
-    const std::vector<UnitResult> units = units_with(0.6, 10, engine);
-    const ComparisonOutcome outcome = compare(a_is_less, plan, units);
+    const std::vector<JobResult> jobs = units_with(0.6, 10, engine);
+    const ComparisonOutcome outcome = compare(a_is_less, plan, jobs);
     CHECK(outcome.verdict == Verdict::holds);
     CHECK(outcome.draws == 10);
     CHECK(outcome.draws_agree == 10);
@@ -50,15 +49,15 @@ TEST_CASE("a clear difference in every draw holds and the opposite claim is cont
     CHECK(outcome.subsets_agree == 3);
     CHECK(outcome.median_ratio == Approx(0.6).epsilon(0.05));
     CHECK(outcome.p_holds == Approx(1.0 / 1024));
-    CHECK(compare({"B", "A", "force", Phase::steady, 0}, plan, units).verdict == Verdict::contradicted);
+    CHECK(compare({"B", "A", "force", Phase::steady, 0}, plan, jobs).verdict == Verdict::contradicted);
 }
 
 TEST_CASE("a comparison holds only with its claimed gain") {
     DFDYN_SEEDED_ENGINE(engine);
     const Plan plan = two_case_plan(10);
-    const std::vector<UnitResult> units = units_with(0.8, 10, engine);
+    const std::vector<JobResult> jobs = units_with(0.8, 10, engine);
     const auto with_gain = [&](const std::string& better, const std::string& worse, double gain) {
-        return compare({better, worse, "torque", Phase::transient, gain}, plan, units).verdict;
+        return compare({better, worse, "torque", Phase::transient, gain}, plan, jobs).verdict;
     };
     CHECK(with_gain("A", "B", 0.1) == Verdict::holds);
     CHECK(with_gain("A", "B", 0.3) == Verdict::contradicted);
@@ -70,10 +69,10 @@ TEST_CASE("too few or contradictory or missing draws leave a comparison undecide
     DFDYN_SEEDED_ENGINE(engine);
     CHECK(compare(a_is_less, two_case_plan(4), units_with(0.1, 4, engine)).verdict == Verdict::undecided);
     CHECK(compare(a_is_less, two_case_plan(5), units_with(0.1, 5, engine)).verdict == Verdict::holds);
-    std::vector<UnitResult> mixed = units_with(0.5, 4, engine);
-    for (const UnitResult& unit : units_with(2, 8, engine)) {
-        if (unit.seed > 4) {
-            mixed.push_back(unit);
+    std::vector<JobResult> mixed = units_with(0.5, 4, engine);
+    for (const JobResult& job : units_with(2, 8, engine)) {
+        if (job.seed > 4) {
+            mixed.push_back(job);
         }
     }
     const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(8), mixed);
@@ -87,13 +86,13 @@ TEST_CASE("too few or contradictory or missing draws leave a comparison undecide
 
 TEST_CASE("a difference in only one subset does not hold") {
     DFDYN_SEEDED_ENGINE(engine);
-    std::vector<UnitResult> units = units_with(1.05, 10, engine);
-    for (UnitResult& unit : units) {
-        for (double& error : unit.error[0][1]) {
-            error *= unit.case_name == "A" ? 0.1 : 1;
+    std::vector<JobResult> jobs = units_with(1.05, 10, engine);
+    for (JobResult& job : jobs) {
+        for (double& error : job.error[0][1]) {
+            error *= job.case_name == "A" ? 0.1 : 1;
         }
     }
-    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(10), units);
+    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(10), jobs);
     CHECK(outcome.p_holds < 0.05);
     CHECK(outcome.subsets_agree == 1);
     CHECK(outcome.verdict == Verdict::undecided);
@@ -103,37 +102,37 @@ TEST_CASE("a case that loses ticks loses the draw") {
     DFDYN_SEEDED_ENGINE(engine);
     const Plan plan = two_case_plan(10);
     const Comparison transient{"A", "B", "force", Phase::transient, 0};
-    std::vector<UnitResult> units = units_with(0.5, 10, engine);
+    std::vector<JobResult> jobs = units_with(0.5, 10, engine);
     SECTION("the better one") {
-        lose(units, "A", 4);
-        const ComparisonOutcome outcome = compare(transient, plan, units);
+        lose(jobs, "A", 4);
+        const ComparisonOutcome outcome = compare(transient, plan, jobs);
         CHECK(outcome.draws == 10);
         CHECK(outcome.draws_agree == 0);
         CHECK(outcome.subsets_agree == 0);
         CHECK(outcome.median_ratio == infinite);
         CHECK(outcome.verdict == Verdict::contradicted);
-        CHECK(compare(a_is_less, plan, units).verdict == Verdict::holds); // no tick of this phase was lost
+        CHECK(compare(a_is_less, plan, jobs).verdict == Verdict::holds); // no tick of this phase was lost
     }
     SECTION("the better one in some draws") {
-        lose(units, "A", 4, 4);
-        const ComparisonOutcome outcome = compare(transient, plan, units);
+        lose(jobs, "A", 4, 4);
+        const ComparisonOutcome outcome = compare(transient, plan, jobs);
         CHECK(outcome.draws_agree == 6);
         CHECK(outcome.subsets_agree == 3);
         CHECK(outcome.upper_ratio == infinite);
         CHECK(outcome.verdict == Verdict::undecided);
     }
     SECTION("the worse one") {
-        lose(units, "B", 4);
-        const ComparisonOutcome outcome = compare({"A", "B", "force", Phase::transient, 0.9}, plan, units);
+        lose(jobs, "B", 4);
+        const ComparisonOutcome outcome = compare({"A", "B", "force", Phase::transient, 0.9}, plan, jobs);
         CHECK(outcome.median_ratio == 0);
         CHECK(outcome.verdict == Verdict::holds);
     }
     SECTION("both: a tie, whatever the gain") {
-        lose(units, "A", 4);
-        lose(units, "B", 5);
+        lose(jobs, "A", 4);
+        lose(jobs, "B", 5);
         for (const double gain : {-0.5, 0.0, 0.5}) {
             const ComparisonOutcome outcome =
-                compare({"A", "B", "force", Phase::transient, gain}, plan, units);
+                compare({"A", "B", "force", Phase::transient, gain}, plan, jobs);
             CHECK(outcome.draws == 10);
             CHECK(outcome.draws_agree == 0);
             CHECK(outcome.median_ratio == 1);
@@ -144,12 +143,12 @@ TEST_CASE("a case that loses ticks loses the draw") {
 
 TEST_CASE("the spread of a comparison is the quartiles of its ratio over the draws") {
     DFDYN_SEEDED_ENGINE(engine);
-    std::vector<UnitResult> units;
+    std::vector<JobResult> jobs;
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        units.push_back(unit_at("A", seed, 0.1 * static_cast<double>(seed), engine));
-        units.push_back(unit_at("B", seed, 1, engine));
+        jobs.push_back(unit_at("A", seed, 0.1 * static_cast<double>(seed), engine));
+        jobs.push_back(unit_at("B", seed, 1, engine));
     }
-    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(5), units);
+    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(5), jobs);
     CHECK(outcome.lower_ratio == Approx(0.2).epsilon(0.1));
     CHECK(outcome.median_ratio == Approx(0.3).epsilon(0.1));
     CHECK(outcome.upper_ratio == Approx(0.4).epsilon(0.1));
@@ -157,11 +156,11 @@ TEST_CASE("the spread of a comparison is the quartiles of its ratio over the dra
 
 TEST_CASE("the draws are paired by their seed and not by their order") {
     DFDYN_SEEDED_ENGINE(engine);
-    std::vector<UnitResult> units = units_with(0.9, 10, engine);
-    std::ranges::reverse(units);
-    std::swap(units[0], units[7]);
+    std::vector<JobResult> jobs = units_with(0.9, 10, engine);
+    std::ranges::reverse(jobs);
+    std::swap(jobs[0], jobs[7]);
     // Without pairing, the levels 1 to 10 of the draws would hide the difference.
-    CHECK(compare(a_is_less, two_case_plan(10), units).draws_agree == 10);
+    CHECK(compare(a_is_less, two_case_plan(10), jobs).draws_agree == 10);
 }
 
 TEST_CASE("the verdict on a finding follows from its comparisons") {

@@ -3,7 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/experiment/synthetic_units.hpp"
+#include "tests/tools/experiment/synthetic_jobs.hpp"
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/experiment/result/phase_error.hpp"
 
@@ -19,8 +19,8 @@ using dfdyn::tests::unit_at;
 const double infinite = std::numeric_limits<double>::infinity();
 
 /// Three draws with gaps: no subset begins before tick 2, one ends early, and one value is infinite.
-std::vector<UnitResult> draws_with_gaps(std::mt19937_64& engine) {
-    std::vector<UnitResult> draws;
+std::vector<JobResult> draws_with_gaps(std::mt19937_64& engine) {
+    std::vector<JobResult> draws;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         draws.push_back(unit_at("A", seed, 1, engine));
         for (std::vector<double>& subset : draws.back().error[1]) {
@@ -32,14 +32,14 @@ std::vector<UnitResult> draws_with_gaps(std::mt19937_64& engine) {
     return draws;
 }
 
-std::vector<const UnitResult*> pointers(const std::vector<UnitResult>& draws) {
-    std::vector<const UnitResult*> all;
-    std::ranges::transform(draws, std::back_inserter(all), [](const UnitResult& draw) { return &draw; });
+std::vector<const JobResult*> pointers(const std::vector<JobResult>& draws) {
+    std::vector<const JobResult*> all;
+    std::ranges::transform(draws, std::back_inserter(all), [](const JobResult& draw) { return &draw; });
     return all;
 }
 
 /// The mean over the subsets of one draw, computed explicitly.
-double draw_mean(const UnitResult& draw, std::size_t tick) {
+double draw_mean(const JobResult& draw, std::size_t tick) {
     double sum = 0;
     int count = 0;
     for (std::size_t subset = 0; subset < 3; ++subset) {
@@ -53,7 +53,7 @@ double draw_mean(const UnitResult& draw, std::size_t tick) {
 
 TEST_CASE("the curve is the mean over subsets and then over draws with the quartiles of the draws") {
     DFDYN_SEEDED_ENGINE(engine);
-    const std::vector<UnitResult> draws = draws_with_gaps(engine);
+    const std::vector<JobResult> draws = draws_with_gaps(engine);
     const ErrorCurve curve = error_curve(pointers(draws), 1);
     REQUIRE(curve.time_s.size() == 60);
     CHECK(std::isnan(curve.mean[0]));
@@ -101,8 +101,8 @@ TEST_CASE("a thinned curve averages each interval of its logarithmic axis once")
 
 TEST_CASE("the transient and the steady phase are separated at the settling time") {
     DFDYN_SEEDED_ENGINE(engine);
-    const std::vector<UnitResult> draws = draws_with_gaps(engine);
-    const UnitResult& draw = draws.front();
+    const std::vector<JobResult> draws = draws_with_gaps(engine);
+    const JobResult& draw = draws.front();
     const std::vector<double> transient = errors_of_phase(draw, 1, 0, Phase::transient, 2);
     const std::vector<double> steady = errors_of_phase(draw, 1, 0, Phase::steady, 2);
     CHECK(transient.size() == 18); // ticks 2 … 19

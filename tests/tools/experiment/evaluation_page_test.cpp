@@ -4,7 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tests/tools/experiment/synthetic_units.hpp"
+#include "tests/tools/experiment/synthetic_jobs.hpp"
 #include "tests/tools/support/balanced_markup.hpp"
 
 #include <algorithm>
@@ -33,8 +33,8 @@ Evaluation evaluation() {
     one.data.start.output.names = {"fx", "mx"};
     one.data.subsets.resize(3);
     for (const std::uint64_t seed : one.plan.seeds) {
-        one.results.units.push_back(unit_at("A", seed, 0.5, engine));
-        one.results.units.push_back(unit_at("B", seed, 1, engine));
+        one.results.jobs.push_back(unit_at("A", seed, 0.5, engine));
+        one.results.jobs.push_back(unit_at("B", seed, 1, engine));
     }
     one.plan.findings = {
         {"A wins", "A errs less.", "Because of that.", {{"A", "B", "force", Phase::steady, 0}}},
@@ -123,9 +123,9 @@ TEST_CASE("lost ticks and cases without draws are mentioned with the table") {
     const TemporaryDirectory directory;
     write(directory, one);
     CHECK_THAT(file_content(directory.path() / "tables.md"), !ContainsSubstring("Lost"));
-    for (UnitResult& unit : one.results.units) {
-        if (unit.case_name == "B") {
-            unit.error[1][2][50] = std::numeric_limits<double>::infinity();
+    for (JobResult& job : one.results.jobs) {
+        if (job.case_name == "B") {
+            job.error[1][2][50] = std::numeric_limits<double>::infinity();
         }
     }
     one.plan.cases[0].model = std::string("P");
@@ -143,8 +143,8 @@ TEST_CASE("the tables show the spread over the draws") {
     one.plan.seeds = {1, 2, 3};
     one.data.start.output.names = {"fx", "mx"};
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
-        one.results.units.push_back(unit_at("A", seed, 1, engine));
-        for (auto& group : one.results.units.back().error) {
+        one.results.jobs.push_back(unit_at("A", seed, 1, engine));
+        for (auto& group : one.results.jobs.back().error) {
             for (std::vector<double>& subset : group) {
                 std::ranges::fill(subset, static_cast<double>(seed));
             }
@@ -159,7 +159,7 @@ TEST_CASE("the tables show the spread over the draws") {
 
 TEST_CASE("failed cases are reported and the others are shown") {
     Evaluation one = evaluation();
-    std::erase_if(one.results.units, [](const UnitResult& unit) { return unit.case_name == "B"; });
+    std::erase_if(one.results.jobs, [](const JobResult& job) { return job.case_name == "B"; });
     one.results.failed = {{"B", 1, "training: <no> likelihood"}};
     const TemporaryDirectory directory;
     write(directory, one);

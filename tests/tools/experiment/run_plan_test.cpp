@@ -5,8 +5,8 @@
 #include "tests/tools/experiment/small_experiment.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/experiment/plan/file_checksum.hpp"
-#include "tools/experiment/run/run_unit.hpp"
-#include "tools/experiment/run/unit_file.hpp"
+#include "tools/experiment/run/job_file.hpp"
+#include "tools/experiment/run/run_job.hpp"
 #include "tools/replay/replay.hpp"
 
 #include <cmath>
@@ -41,8 +41,8 @@ CaseMemories empty_memories(const Plan& plan) {
 /// All results except the times.
 json without_times(const EvaluationResults& results) {
     json all = json::array();
-    for (const UnitResult& unit : results.units) {
-        all.push_back(json(unit_to_json(unit)));
+    for (const JobResult& job : results.jobs) {
+        all.push_back(json(unit_to_json(job)));
         all.back().erase("median_us");
     }
     return all;
@@ -52,14 +52,14 @@ TEST_CASE("a run computes every case with every draw and reuses its results") {
     const TemporaryDirectory directory;
     write_small_experiment(directory);
     const EvaluationResults first = run(directory);
-    REQUIRE(first.units.size() == 4);
+    REQUIRE(first.jobs.size() == 4);
     CHECK(first.failed.empty());
     CHECK(first.reused == 0);
-    CHECK(first.units[1].case_name == "NP-ML-STD");
-    CHECK(first.units[1].seed == 2);
-    CHECK(first.units[2].case_name == "NP-ML-DFR");
-    CHECK(first.units[2].columns == 20);
-    CHECK(first.units[0].error != first.units[1].error); // the draws have different features
+    CHECK(first.jobs[1].case_name == "NP-ML-STD");
+    CHECK(first.jobs[1].seed == 2);
+    CHECK(first.jobs[2].case_name == "NP-ML-DFR");
+    CHECK(first.jobs[2].columns == 20);
+    CHECK(first.jobs[0].error != first.jobs[1].error); // the draws have different features
     const std::filesystem::path file = directory.path() / "out/cases/NP-ML-DFR/2.json";
     const auto written = std::filesystem::last_write_time(file);
     const EvaluationResults second = run(directory);
@@ -84,7 +84,7 @@ TEST_CASE("only units with changed inputs run again") {
         plan["cases"][0]["input"] = {"STD", "DFR", "DF"};
         directory.write("plan.json", plan.dump());
         const EvaluationResults results = run(directory);
-        CHECK(results.units.size() == 9);
+        CHECK(results.jobs.size() == 9);
         CHECK(results.reused == 4);
     }
     SECTION("a setting of one case: that one") {
@@ -134,20 +134,20 @@ TEST_CASE("the inputs of a unit contain the program's checksum") {
     // The standard check value of CRC-32.
     CHECK(file_checksum(directory.write("text", "123456789")) == "cbf43926, 9 bytes");
     const Plan plan = read_plan(write_small_experiment(directory));
-    const std::string program = unit_inputs(plan, load_plan_data(plan), plan.cases[0], 1)["program"];
+    const std::string program = job_inputs(plan, load_plan_data(plan), plan.cases[0], 1)["program"];
     CHECK_THAT(program, ContainsSubstring(build_flags()));
     CHECK_THAT(program, ContainsSubstring(file_checksum("/proc/self/exe")));
 }
 
 TEST_CASE("a unit without learned ticks or with lost ticks is read back as written") {
     const TemporaryDirectory directory;
-    UnitResult unit;
-    unit.case_name = "A";
-    unit.median_us = std::nan("");
-    unit.error = {{{std::nan(""), std::numeric_limits<double>::infinity(), 0.5}}};
+    JobResult job;
+    job.case_name = "A";
+    job.median_us = std::nan("");
+    job.error = {{{std::nan(""), std::numeric_limits<double>::infinity(), 0.5}}};
     const nlohmann::ordered_json inputs{{"seed", 1}};
-    write_unit(directory.path() / "1.json", inputs, unit);
-    const auto read = read_unit(directory.path() / "1.json", inputs);
+    write_job(directory.path() / "1.json", inputs, job);
+    const auto read = read_job(directory.path() / "1.json", inputs);
     REQUIRE(read);
     CHECK(std::isnan(read->median_us));
     CHECK(std::isnan(read->error[0][0][0]));
@@ -176,7 +176,7 @@ TEST_CASE("several jobs give the same results in the same order as one") {
     write_small_experiment(serial, plan);
     write_small_experiment(parallel, plan);
     const EvaluationResults results = run(parallel, 3);
-    CHECK(results.units.size() == 8);
+    CHECK(results.jobs.size() == 8);
     CHECK(without_times(results) == without_times(run(serial, 1)));
 }
 
@@ -187,7 +187,7 @@ TEST_CASE("a case that fails does not stop the others and is tried again") {
     write_small_experiment(directory, plan);
     for (int attempt = 0; attempt < 2; ++attempt) {
         const EvaluationResults results = run(directory);
-        CHECK(results.units.size() == 4);
+        CHECK(results.jobs.size() == 4);
         REQUIRE(results.failed.size() == 2);
         CHECK(results.failed[1].case_name == "NP-ML-DFR-wide");
         CHECK(results.failed[1].seed == 2);
@@ -201,13 +201,13 @@ TEST_CASE("all cases are scored at the same ticks") {
     plan["cases"].push_back({{"input", "DFR"}, {"lags", 9}, {"suffix", "-long"}});
     write_small_experiment(directory, plan);
     const EvaluationResults results = run(directory);
-    REQUIRE(results.units.size() == 6);
-    for (const UnitResult& unit : results.units) {
-        CAPTURE(unit.case_name, unit.seed);
+    REQUIRE(results.jobs.size() == 6);
+    for (const JobResult& job : results.jobs) {
+        CAPTURE(job.case_name, job.seed);
         for (std::size_t tick = 0; tick < 100; ++tick) {
             const bool scored = tick >= 9 && tick < 95;
-            CHECK(std::isfinite(unit.error[0][1][tick]) == scored);
-            CHECK(std::isnan(unit.error[0][1][tick]) == !scored);
+            CHECK(std::isfinite(job.error[0][1][tick]) == scored);
+            CHECK(std::isnan(job.error[0][1][tick]) == !scored);
         }
     }
 }
@@ -217,7 +217,7 @@ TEST_CASE("a unit equals the written-out protocol") {
     const Plan plan = read_plan(write_small_experiment(directory));
     const PlanData data = load_plan_data(plan);
     CaseMemories memories = empty_memories(plan);
-    const UnitResult unit = run_unit(plan, data, plan.cases[1], 7, memories, 2, ignore);
+    const JobResult job = run_job(plan, data, plan.cases[1], 7, memories, 2, ignore);
 
     CaseMemory other;
     const TrainedModel model =
@@ -229,10 +229,10 @@ TEST_CASE("a unit equals the written-out protocol") {
         const ReplayedRecording replayed =
             replay(*estimator, {&model, 1}, data.subsets[subset], plan.horizon, [](std::size_t) {});
         REQUIRE(replayed.horizon.size() == 100 - 4 - 5);
-        CHECK(std::isnan(unit.error[1][subset][3])); // the window is still filling
+        CHECK(std::isnan(job.error[1][subset][3])); // the window is still filling
         for (const HorizonIndex& index : replayed.horizon) {
-            CHECK(unit.error[0][subset][index.tick] == index.epsilon[0]);
-            CHECK(unit.error[1][subset][index.tick] == Approx((index.epsilon[0] + index.epsilon[1]) / 2));
+            CHECK(job.error[0][subset][index.tick] == index.epsilon[0]);
+            CHECK(job.error[1][subset][index.tick] == Approx((index.epsilon[0] + index.epsilon[1]) / 2));
         }
     }
 }
@@ -245,8 +245,8 @@ TEST_CASE("the error relative to the variance is the squared error of the horizo
     const Plan plan = read_plan(write_small_experiment(directory, content));
     const PlanData data = load_plan_data(plan);
     CaseMemories memories = empty_memories(plan);
-    const UnitResult by_horizon = run_unit(relative, data, plan.cases[1], 1, memories, 2, ignore);
-    const UnitResult by_variance = run_unit(plan, data, plan.cases[1], 1, memories, 2, ignore);
+    const JobResult by_horizon = run_job(relative, data, plan.cases[1], 1, memories, 2, ignore);
+    const JobResult by_variance = run_job(plan, data, plan.cases[1], 1, memories, 2, ignore);
     const Recording& subset = data.subsets[1];
     for (std::size_t tick = 4; tick < 90; ++tick) {
         double square = 0;
@@ -279,20 +279,20 @@ TEST_CASE("a combination of cases combines their models and runs again if a memb
     plan["cases"].push_back({{"combine", {"NP-ML-STD", "NP-ML-DFR"}}, {"name", "both-of-them"}});
     write_small_experiment(directory, plan);
     const EvaluationResults results = run(directory);
-    REQUIRE(results.units.size() == 6);
-    const UnitResult& combined = results.units[4];
+    REQUIRE(results.jobs.size() == 6);
+    const JobResult& combined = results.jobs[4];
     CHECK(combined.case_name == "both-of-them");
     CHECK(combined.columns == 40);
     // The error of the mean of two members is below the mean of their errors.
     for (const std::size_t group : {0U, 1U}) {
-        const auto sum_of = [group](const UnitResult& unit) {
+        const auto sum_of = [group](const JobResult& job) {
             double sum = 0;
-            for (const double error : unit.error[group][0]) {
+            for (const double error : job.error[group][0]) {
                 sum += std::isfinite(error) ? error : 0;
             }
             return sum;
         };
-        CHECK(sum_of(combined) < std::max(sum_of(results.units[0]), sum_of(results.units[2])));
+        CHECK(sum_of(combined) < std::max(sum_of(results.jobs[0]), sum_of(results.jobs[2])));
         CHECK(sum_of(combined) > 0);
     }
     CHECK(run(directory).reused == 6);

@@ -35,7 +35,7 @@ struct MotionTick {
     std::array<double, 6> output{};
 };
 
-std::vector<float> predictions(HostEstimator& estimator, int first, int last) {
+std::vector<float> predictions(RuntimeEstimator& estimator, int first, int last) {
     std::vector<float> all;
     for (int tick = first; tick < last; ++tick) {
         const MotionTick motion(tick);
@@ -119,7 +119,7 @@ class ByHand {
         }
     }
 
-    std::array<std::unique_ptr<HostEstimator>, 2> members_;
+    std::array<std::unique_ptr<RuntimeEstimator>, 2> members_;
     Combination combination_;
     std::array<std::array<std::vector<float>, 2>, 2> held_; ///< the newer copy, then the older one
     int ticks_ = 0;
@@ -172,7 +172,7 @@ TEST_CASE(
 }
 
 /// The mean square errors of the combination and of the weights that follow from them.
-std::vector<float> numbers_of(const HostEstimator& estimator) {
+std::vector<float> numbers_of(const RuntimeEstimator& estimator) {
     std::vector<float> numbers(estimator.weight_count());
     estimator.copy_weights(numbers);
     return numbers;

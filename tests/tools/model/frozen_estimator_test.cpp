@@ -23,7 +23,7 @@ struct Replayed {
 };
 
 /// Ticks over a smooth motion with a gap, and the given outputs.
-Replayed run(HostEstimator& estimator, const std::vector<Outputs>& outputs) {
+Replayed run(RuntimeEstimator& estimator, const std::vector<Outputs>& outputs) {
     Replayed replayed;
     for (std::size_t row = 0; row < outputs.size(); ++row) {
         const std::size_t number = row < outputs.size() / 2 ? row : row + 10;

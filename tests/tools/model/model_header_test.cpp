@@ -8,8 +8,8 @@
 #include "tools/model/header/model_header.hpp"
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/model/run_time/contact_constants.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
 #include "tools/model/run_time/host_model.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 
 #include <array>
 #include <cmath>

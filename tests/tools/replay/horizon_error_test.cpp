@@ -12,7 +12,7 @@ using namespace dfdyn::tools;
 
 /// A substitute for a model with two outputs. Its prediction is weight · column, and the test prescribes all
 /// of these.
-class PrescribedEstimator final : public HostEstimator {
+class PrescribedEstimator final : public RuntimeEstimator {
   public:
     std::vector<float> weights{0, 0};
     float column = 0;

@@ -5,7 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/base/recording/recording.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/model/structure.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // dlib's recursive least squares, compiled if dlib's headers are available at build time.
-#include "tools/bench/peers/typed_contender.hpp"
+#include "tools/bench/peers/typed_learner.hpp"
 
 #ifdef DFDYN_HAS_DLIB
 
@@ -11,10 +11,10 @@ namespace dfdyn::tools {
 namespace {
 
 /// It has one output; six instances are used, as in an application.
-class DlibRls final : public TypedContender<double> {
+class DlibRls final : public TypedLearner<double> {
   public:
     explicit DlibRls(const RegressionTask& task)
-        : TypedContender("dlib::rls x 6", Contender::Kind::other, task),
+        : TypedLearner("dlib::rls x 6", BenchLearner::Kind::other, task),
           learners_(RegressionTask::outputs, dlib::rls(1, RegressionTask::prior_variance)) {}
 
   private:

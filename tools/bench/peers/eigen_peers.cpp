@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/peers/typed_contender.hpp"
+#include "tools/bench/peers/typed_learner.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -14,7 +14,7 @@ class EigenCovariance final : public EigenContender<Scalar> {
 
   public:
     explicit EigenCovariance(const RegressionTask& task)
-        : Base("Eigen covariance, symmetric", Contender::Kind::covariance, task),
+        : Base("Eigen covariance, symmetric", BenchLearner::Kind::covariance, task),
           covariance_(Base::Matrix::Identity(this->columns(), this->columns()) *
                       Scalar(RegressionTask::prior_variance)),
           gain_(this->columns()) {}
@@ -41,7 +41,7 @@ class EigenCholesky final : public EigenContender<Scalar> {
 
   public:
     explicit EigenCholesky(const RegressionTask& task)
-        : Base("Eigen LLT::rankUpdate and solves", Contender::Kind::cholesky, task),
+        : Base("Eigen LLT::rankUpdate and solves", BenchLearner::Kind::cholesky, task),
           factor_(typename Base::Matrix(Base::Matrix::Identity(this->columns(), this->columns()) /
                                         Scalar(RegressionTask::prior_variance))),
           right_(this->weights_) {}

@@ -2,7 +2,7 @@
 // The work of GURLS (https://github.com/LCSL/GURLS, the paper's tool) for each sample of its recursive
 // Cholesky update (rlsprimalrecupdatecholesky.h, cholupdateutils.h, gmat2d.hpp), implemented again. Compiled
 // if BLAS is available at build time. GURLS itself is not in Debian.
-#include "tools/bench/peers/typed_contender.hpp"
+#include "tools/bench/peers/typed_learner.hpp"
 
 #ifdef DFDYN_HAS_BLAS
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/peers/contender.hpp"
+#include "tools/bench/peers/bench_learner.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Cholesky method with Fortran libraries, compiled if qrupdate, LAPACK and BLAS are available at build
 // time.
-#include "tools/bench/peers/typed_contender.hpp"
+#include "tools/bench/peers/typed_learner.hpp"
 
 #ifdef DFDYN_HAS_QRUPDATE
 
@@ -36,7 +36,7 @@ class Qrupdate final : public EigenContender<Scalar> {
 
   public:
     explicit Qrupdate(const RegressionTask& task)
-        : Base("qrupdate ch1up and LAPACK potrs", Contender::Kind::other, task),
+        : Base("qrupdate ch1up and LAPACK potrs", BenchLearner::Kind::other, task),
           factor_(Base::Matrix::Identity(this->columns(), this->columns()) /
                   std::sqrt(Scalar(RegressionTask::prior_variance))),
           right_(this->weights_), row_(this->columns()), work_(this->columns()) {}

@@ -3,7 +3,7 @@
 
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/bench/suites/bench_arm.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 
 #include <algorithm>
 #include <cmath>

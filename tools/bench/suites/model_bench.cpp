@@ -82,7 +82,7 @@ class Nonparametric final : public Ticking {
     void tick() override {
         const auto& one = instants_[next_ = (next_ + 1) % rows];
         whole_tick(*learner_, one.target.data(), one.phi.data());
-        keep(learner_->last_ratio());
+        keep(learner_->last_variance_ratio());
     }
 
   private:
@@ -102,7 +102,7 @@ class Kernel final : public Ticking {
         const auto& one = instants_[next_ = (next_ + 1) % rows];
         whole_tick(*learner_, one.target.data(), one.phi.data(), one.psi.data());
         float values[outputs];
-        learner_->last_ratios(values);
+        learner_->last_variance_ratios(values);
         keep(values);
     }
     Eigen::VectorXd predict(const Instant<columns, p>& one) {

@@ -8,7 +8,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-TickResult verify(Contender& contender, const RegressionTask::Matrix& expected, int columns) {
+TickResult verify(BenchLearner& contender, const RegressionTask::Matrix& expected, int columns) {
     for (int i = 0; i < verified_ticks; ++i) {
         contender.tick();
     }
@@ -22,7 +22,7 @@ TickResult verify(Contender& contender, const RegressionTask::Matrix& expected, 
 void run_size(TickBench& bench, int columns, bool with_peers, const RepetitionOptions& options,
               MultiplyAddProbe& probe, const std::function<void(double)>& on_share_done) {
     const RegressionTask task(columns);
-    Contenders contenders = our_contenders(task);
+    Contenders contenders = dfdyn_learners(task);
     std::vector<std::string> scalars;
     for (const auto& ours : contenders) {
         scalars.push_back(ours->scalar());
@@ -78,7 +78,7 @@ TickBench run_tick_bench(const std::vector<int>& columns, int largest_peer, cons
 }
 
 const TickResult* find_ours(const TickBench& bench, const std::string& scalar, int columns) {
-    return fastest_of(bench, Contender::Kind::ours, scalar, columns);
+    return fastest_of(bench, BenchLearner::Kind::ours, scalar, columns);
 }
 
 const FloorResult* find_floor(const TickBench& bench, const std::string& scalar, int columns) {
@@ -89,8 +89,8 @@ const FloorResult* find_floor(const TickBench& bench, const std::string& scalar,
 
 const TickResult* fastest_peer(const TickBench& bench, const std::string& scalar, int columns) {
     const TickResult* fastest = nullptr;
-    for (const Contender::Kind kind : {Contender::Kind::covariance, Contender::Kind::cholesky,
-                                       Contender::Kind::gurls, Contender::Kind::other}) {
+    for (const BenchLearner::Kind kind : {BenchLearner::Kind::covariance, BenchLearner::Kind::cholesky,
+                                          BenchLearner::Kind::gurls, BenchLearner::Kind::other}) {
         const TickResult* one = fastest_of(bench, kind, scalar, columns);
         if (one != nullptr && (fastest == nullptr || one->times.median < fastest->times.median)) {
             fastest = one;
@@ -99,7 +99,7 @@ const TickResult* fastest_peer(const TickBench& bench, const std::string& scalar
     return fastest;
 }
 
-const TickResult* fastest_of(const TickBench& bench, Contender::Kind kind, const std::string& scalar,
+const TickResult* fastest_of(const TickBench& bench, BenchLearner::Kind kind, const std::string& scalar,
                              int columns) {
     const TickResult* fastest = nullptr;
     for (const TickResult& one : bench.ticks) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/bench/peers/contender.hpp"
-#include "tools/bench/timing/floor.hpp"
+#include "tools/bench/peers/bench_learner.hpp"
+#include "tools/bench/timing/machine_lower_bound.hpp"
 
 #include <functional>
 
@@ -11,7 +11,7 @@ namespace dfdyn::tools {
 /// Result of one learner at one size.
 struct TickResult {
     std::string contender, scalar;
-    Contender::Kind kind = Contender::Kind::other;
+    BenchLearner::Kind kind = BenchLearner::Kind::other;
     int columns = 0;
     double error = 0; ///< of its predictions after some ticks, relative to the batch solution and its rms
     bool right = false;
@@ -21,7 +21,7 @@ struct TickResult {
 struct FloorResult {
     std::string scalar;
     int columns = 0;
-    Floor floor;
+    MachineLowerBound floor;
 };
 
 struct TickBench {
@@ -45,7 +45,7 @@ const FloorResult* find_floor(const TickBench& bench, const std::string& scalar,
 
 /// Returns the fastest correct peer of this size: of one kind, or of all.
 const TickResult* fastest_peer(const TickBench& bench, const std::string& scalar, int columns);
-const TickResult* fastest_of(const TickBench& bench, Contender::Kind kind, const std::string& scalar,
+const TickResult* fastest_of(const TickBench& bench, BenchLearner::Kind kind, const std::string& scalar,
                              int columns);
 
 } // namespace dfdyn::tools

@@ -81,7 +81,7 @@ class LearnedFeedForward {
     int contact_joint() const {
         return contacts_ != nullptr && contacts_->detector().contact() ? contacts_->detector().joint() : -1;
     }
-    /// Resets the covariance after a change of the arm: see HostEstimator::relearn.
+    /// Resets the covariance after a change of the arm: see RuntimeEstimator::relearn.
     void relearn() { learner_->relearn(); }
     /// Returns the monitor's findings so far, with times since `begin`.
     RecordedChanges changes() const;
@@ -94,7 +94,7 @@ class LearnedFeedForward {
 
     std::int64_t sample_period_ns_;
     int lags_;
-    std::unique_ptr<HostEstimator> learner_, follower_;
+    std::unique_ptr<RuntimeEstimator> learner_, follower_;
     MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is monitored
     ContactEstimator* contacts_ = nullptr;  ///< the learner, if contacts are detected
     Budget share_;                          ///< budget of a control tick

@@ -22,8 +22,8 @@ struct EffectColumn {
 struct EffectParameter {
     std::string name, unit;
     double value = 0;
-    double of_nothing = 0; ///< value when the effect is absent
-    double unsettled = 0;  ///< irreducible relative standard deviation (model error)
+    double null_value = 0;              ///< value when the effect is absent
+    double systematic_relative_std = 0; ///< irreducible relative standard deviation (model error)
 };
 
 /// A parameter of an effect, as in the catalogue.
@@ -31,10 +31,10 @@ struct ParameterKind {
     const char* name;
     const char* unit;
     std::optional<double> null_value = 0; ///< value when the effect is absent; empty: no such value exists
-    double unsettled = 0;                 ///< as in EffectParameter
+    double systematic_relative_std = 0;   ///< as in EffectParameter
 
     EffectParameter at(double value) const {
-        return {name, unit, value, null_value.value_or(value), unsettled};
+        return {name, unit, value, null_value.value_or(value), systematic_relative_std};
     }
 };
 
@@ -65,7 +65,7 @@ struct Candidate {
     std::string family; ///< at most one candidate of a family is chosen; empty: no family
     double tried = 1;   ///< number of alternatives from which it was selected beforehand
     /// minimum log-evidence that it must exceed, from the other candidates of its kind
-    double extra_price = 0;
+    double evidence_offset = 0;
     bool event = false; ///< occurs once: other times carry no information on it
     std::vector<EffectColumn> columns;
     std::vector<EffectShape> shapes;

@@ -29,18 +29,18 @@ EffectRegression::EffectRegression(const SpectralRows& rows, const Eigen::Matrix
     }
 }
 
-void EffectRegression::set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& unrest) {
+void EffectRegression::set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& noise_scale) {
     noise_ = std::move(spectra);
     weight_.clear();
     for (Eigen::Index output = 0; output < outputs(); ++output) {
         const Eigen::MatrixXd variance =
-            noise_.col(output).asDiagonal() * unrest[static_cast<std::size_t>(output)];
+            noise_.col(output).asDiagonal() * noise_scale[static_cast<std::size_t>(output)];
         weight_.emplace_back(variance.cwiseSqrt().cwiseInverse());
     }
 }
 
-Eigen::VectorXd EffectRegression::weighed(const Eigen::MatrixXd& rows, Eigen::Index output,
-                                          Eigen::Index first, Eigen::Index count) const {
+Eigen::VectorXd EffectRegression::weighted(const Eigen::MatrixXd& rows, Eigen::Index output,
+                                           Eigen::Index first, Eigen::Index count) const {
     const Eigen::MatrixXd result = weight_[static_cast<std::size_t>(output)]
                                        .middleCols(first, count)
                                        .cwiseProduct(rows.middleCols(first, count));
@@ -61,9 +61,9 @@ void EffectRegression::add_sums(WeighedSums& sums, Eigen::Index output,
     const auto size = std::ssize(rows);
     Eigen::MatrixXd matrix(rows_.bins() * count, size);
     for (Eigen::Index i = 0; i < size; ++i) {
-        matrix.col(i) = weighed(*rows[static_cast<std::size_t>(i)], output, first, count);
+        matrix.col(i) = weighted(*rows[static_cast<std::size_t>(i)], output, first, count);
     }
-    const Eigen::VectorXd wanted = weighed(target_[static_cast<std::size_t>(output)], output, first, count);
+    const Eigen::VectorXd wanted = weighted(target_[static_cast<std::size_t>(output)], output, first, count);
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(size, size);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(matrix.transpose());
     gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
@@ -72,7 +72,7 @@ void EffectRegression::add_sums(WeighedSums& sums, Eigen::Index output,
     sums.energy += wanted.squaredNorm();
 }
 
-WeighedSums EffectRegression::weighed_sums(Eigen::Index first, Eigen::Index count) const {
+WeighedSums EffectRegression::weighted_sums(Eigen::Index first, Eigen::Index count) const {
     std::vector<Eigen::Index> all(columns_.size());
     std::iota(all.begin(), all.end(), 0);
     WeighedSums sums = WeighedSums::zero(columns());
@@ -102,7 +102,7 @@ Eigen::VectorXd EffectRegression::spent(Eigen::Index output, const std::vector<E
     for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
         const Eigen::Index column = fitted[static_cast<std::size_t>(acting[static_cast<std::size_t>(i)])];
         matrix.col(i) =
-            weighed(*columns_[static_cast<std::size_t>(column)]->on(output), output, 0, fitted_frames_);
+            weighted(*columns_[static_cast<std::size_t>(column)]->on(output), output, 0, fitted_frames_);
     }
     const Eigen::VectorXd leverage =
         (matrix * covariance(acting, acting)).cwiseProduct(matrix).rowwise().sum();

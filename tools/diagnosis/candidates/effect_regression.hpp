@@ -54,12 +54,12 @@ class EffectRegression {
 
     /// Sets the noise's spectra (bins x m) and, per output, its local scale (bins x fitted frames). The
     /// weights are the inverses of both.
-    void set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& unrest);
+    void set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& noise_scale);
     const Eigen::MatrixXd& noise() const noexcept { return noise_; }
 
-    WeighedSums weighed_sums() const { return weighed_sums(0, fitted_frames_); }
+    WeighedSums weighted_sums() const { return weighted_sums(0, fitted_frames_); }
     /// Returns the sums over `count` frames from `first` on.
-    WeighedSums weighed_sums(Eigen::Index first, Eigen::Index count) const;
+    WeighedSums weighted_sums(Eigen::Index first, Eigen::Index count) const;
     /// Returns the sums of `columns`, in their order, over one output and all fitted frames.
     WeighedSums sums_of_output(Eigen::Index output, const std::vector<Eigen::Index>& columns) const;
 
@@ -82,8 +82,8 @@ class EffectRegression {
     /// Adds the sums of `columns` over one output: `sums` has one row for each of them.
     void add_sums(WeighedSums& sums, Eigen::Index output, const std::vector<Eigen::Index>& columns,
                   Eigen::Index first, Eigen::Index count) const;
-    Eigen::VectorXd weighed(const Eigen::MatrixXd& rows, Eigen::Index output, Eigen::Index first,
-                            Eigen::Index count) const;
+    Eigen::VectorXd weighted(const Eigen::MatrixXd& rows, Eigen::Index output, Eigen::Index first,
+                             Eigen::Index count) const;
 
     const SpectralRows& rows_;
     Eigen::Index fitted_frames_;

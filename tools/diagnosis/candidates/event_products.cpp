@@ -18,29 +18,29 @@ const Eigen::VectorXd* series_on(const std::vector<EffectColumn>& of, Eigen::Ind
 
 } // namespace
 
-std::optional<double> demanded_by(const std::vector<EventWindow>& events) {
+std::optional<double> noise_event_threshold(const std::vector<EventWindow>& events) {
     // rank of the reference event, from 0; the threshold is three times its log-evidence
     constexpr std::size_t usual = 3;
     return events.size() > usual ? std::optional(1.5 * events[usual].score) : std::nullopt;
 }
 
-Eigen::VectorXd weighed_share(const EffectRegression& regression, const Eigen::VectorXd& series) {
+Eigen::VectorXd weighted_share(const EffectRegression& regression, const Eigen::VectorXd& series) {
     const Eigen::MatrixXd rows = regression.rows().analyse(series);
     const Eigen::MatrixXd precision = regression.noise().cwiseInverse();
     return (precision.transpose() * rows.cwiseAbs2().rowwise().sum()) / series.squaredNorm();
 }
 
-EventProducts::EventProducts(const std::vector<EffectColumn>& of, const Eigen::MatrixXd& weighed,
+EventProducts::EventProducts(const std::vector<EffectColumn>& of, const Eigen::MatrixXd& weighted,
                              const Eigen::VectorXd& share)
-    : moment(Eigen::MatrixXd::Zero(weighed.rows(), std::ssize(of))),
-      square(Eigen::MatrixXd::Zero(weighed.rows(), std::ssize(of) * (std::ssize(of) + 1) / 2)),
+    : moment(Eigen::MatrixXd::Zero(weighted.rows(), std::ssize(of))),
+      square(Eigen::MatrixXd::Zero(weighted.rows(), std::ssize(of) * (std::ssize(of) + 1) / 2)),
       columns(std::ssize(of)) {
-    for (Eigen::Index output = 0; output < weighed.cols(); ++output) {
+    for (Eigen::Index output = 0; output < weighted.cols(); ++output) {
         Eigen::Index at = 0;
         for (Eigen::Index i = 0; i < columns; ++i) {
             const Eigen::VectorXd* const one = series_on(of, i, output);
             if (one != nullptr) {
-                moment.col(i) += weighed.col(output).cwiseProduct(*one);
+                moment.col(i) += weighted.col(output).cwiseProduct(*one);
             }
             for (Eigen::Index j = 0; j <= i; ++j, ++at) {
                 const Eigen::VectorXd* const other = series_on(of, j, output);

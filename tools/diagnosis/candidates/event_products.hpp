@@ -14,10 +14,10 @@ inline constexpr double events_apart_s = 2; ///< windows closer than this belong
 
 /// Returns the minimum log-evidence required of an event: three times that of the fourth-best event. Empty if
 /// fewer than four events exist.
-std::optional<double> demanded_by(const std::vector<EventWindow>& events);
+std::optional<double> noise_event_threshold(const std::vector<EventWindow>& events);
 
 /// Returns, per output, the ratio of a series' energy after weighting by the noise to its energy before.
-Eigen::VectorXd weighed_share(const EffectRegression& regression, const Eigen::VectorXd& series);
+Eigen::VectorXd weighted_share(const EffectRegression& regression, const Eigen::VectorXd& series);
 
 /// Per row, the products of the weighted residual with some columns (p), and of the columns with each other
 /// (p (p + 1) / 2), summed over the outputs.
@@ -25,7 +25,7 @@ struct EventProducts {
     Eigen::MatrixXd moment, square;
     Eigen::Index columns;
 
-    EventProducts(const std::vector<EffectColumn>& of, const Eigen::MatrixXd& weighed,
+    EventProducts(const std::vector<EffectColumn>& of, const Eigen::MatrixXd& weighted,
                   const Eigen::VectorXd& share);
 
     /// Returns the sum of squares that the columns explain, from these sums of products.

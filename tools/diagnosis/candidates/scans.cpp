@@ -9,8 +9,8 @@ namespace dfdyn::tools {
 namespace {
 
 /// Returns the weighted residual of an output (`left`: bins x fitted frames) as a time series.
-Eigen::VectorXd weighed_series(const EffectRegression& regression, Eigen::Index output,
-                               const Eigen::MatrixXd& left) {
+Eigen::VectorXd weighted_series(const EffectRegression& regression, Eigen::Index output,
+                                const Eigen::MatrixXd& left) {
     const SpectralRows& rows = regression.rows();
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows.bins(), rows.frames());
     all.leftCols(left.cols()) = regression.weight(output).cwiseProduct(left);
@@ -56,19 +56,19 @@ void bridge(Eigen::VectorXd& series, const std::vector<bool>& away, Eigen::Index
 
 } // namespace
 
-Eigen::MatrixXd weighed_residual(const EffectRegression& regression, const Eigen::VectorXd& coefficients) {
+Eigen::MatrixXd weighted_residual(const EffectRegression& regression, const Eigen::VectorXd& coefficients) {
     Eigen::MatrixXd result(regression.rows().rows(), regression.outputs());
     for (Eigen::Index output = 0; output < regression.outputs(); ++output) {
-        result.col(output) = weighed_series(regression, output, regression.residual(output, coefficients));
+        result.col(output) = weighted_series(regression, output, regression.residual(output, coefficients));
     }
     return result;
 }
 
-Eigen::MatrixXd weighed_residual_away_from_reversals(const DiagnosisSignals& signals,
-                                                     const EffectRegression& regression,
-                                                     const Eigen::VectorXd& coefficients) {
+Eigen::MatrixXd weighted_residual_away_from_reversals(const DiagnosisSignals& signals,
+                                                      const EffectRegression& regression,
+                                                      const Eigen::VectorXd& coefficients) {
     if (signals.wrench()) {
-        return weighed_residual(regression, coefficients);
+        return weighted_residual(regression, coefficients);
     }
     const SpectralRows& rows = regression.rows();
     const auto beside = static_cast<Eigen::Index>(0.1 * signals.measured.rate_hz);
@@ -81,7 +81,7 @@ Eigen::MatrixXd weighed_residual_away_from_reversals(const DiagnosisSignals& sig
         bridge(series, near_reversals(signals.measured.motion.velocity.col(output), signals.measured.rate_hz),
                beside);
         result.col(output) =
-            weighed_series(regression, output, rows.analyse(series).leftCols(regression.fitted_frames()));
+            weighted_series(regression, output, rows.analyse(series).leftCols(regression.fitted_frames()));
     }
     return result;
 }

@@ -83,7 +83,7 @@ std::vector<Candidate> BacklashScan::candidates(const FittedResidual& residual) 
         double best = 0;
         double found = 0;
         for (const Course& course : courses_[joint]) {
-            const double product = residual.weighed.cwiseProduct(course.series).sum();
+            const double product = residual.weighted.cwiseProduct(course.series).sum();
             const double energy = course.power.cwiseQuotient(residual.regression.noise()).sum();
             const double gain = product > 0 && energy > 0 ? product * product / energy : 0;
             if (gain > best) {

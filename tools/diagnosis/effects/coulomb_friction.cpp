@@ -36,7 +36,7 @@ std::vector<Candidate> coulomb_candidates(const DiagnosisSignals& signals, std::
 }
 
 /// Two levels are equivalent to one level and an offset.
-EffectDisposition extend_by_coulomb(Extension& extension, const ChosenEffect& chosen) {
+EffectDisposition extend_by_coulomb(ModelExtension& extension, const ChosenEffect& chosen) {
     if (chosen.coefficients.size() == 2) {
         add_column(extension, chosen, on_joint(chosen, effect_kinds::torque_offset), 1);
     }

@@ -15,7 +15,7 @@ class EffectRegression;
 class SpectralRows;
 struct ChosenEffect;
 struct ExplainingVariable;
-struct Extension;
+struct ModelExtension;
 struct PlottedFinding;
 
 /// Representation of an effect in the extended model.
@@ -55,7 +55,7 @@ struct FittedResidual {
     const EffectRegression& regression;
     Eigen::VectorXd coefficients; ///< of all columns
     Eigen::VectorXd named;        ///< the same, with zeros for unnamed candidates
-    Eigen::MatrixXd weighed;      ///< T x m: weighed_residual() of `coefficients`
+    Eigen::MatrixXd weighted;     ///< T x m: weighted_residual() of `coefficients`
 };
 
 /// Finds candidates whose time or shape only the residual shows.
@@ -68,7 +68,7 @@ class EffectScan {
 
     /// Returns the candidates that explain most of the residual. The scan must outlive them.
     virtual std::vector<Candidate> candidates(const FittedResidual& residual) const = 0;
-    /// Sets the evidence offset (`extra_price`) of all candidates of this effect, found now or earlier.
+    /// Sets the evidence offset (`evidence_offset`) of all candidates of this effect, found now or earlier.
     virtual void set_prices(const std::vector<Candidate*>& /*own*/,
                             const FittedResidual& /*residual*/) const {}
 };
@@ -112,7 +112,7 @@ struct Effect {
     /// Returns the variable over which a finding is plotted. Null: the finding's own contribution.
     ExplainingVariable (*plotted_over)(const PlottedFinding& finding) = nullptr;
     /// Adds the effect to the extended model. Null: it is left out.
-    EffectDisposition (*extend)(Extension& extension, const ChosenEffect& chosen) = nullptr;
+    EffectDisposition (*extend)(ModelExtension& extension, const ChosenEffect& chosen) = nullptr;
 };
 
 } // namespace dfdyn::tools

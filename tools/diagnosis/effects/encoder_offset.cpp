@@ -27,7 +27,7 @@ Candidate offset_candidate(const DiagnosisSignals& signals, std::size_t joint, d
 }
 
 /// Moves the joint's zero by the offset, so that the model interprets the measured position correctly.
-EffectDisposition extend_by_offset(Extension& extension, const ChosenEffect& chosen) {
+EffectDisposition extend_by_offset(ModelExtension& extension, const ChosenEffect& chosen) {
     RobotJoint& joint = extension.robot.joints[static_cast<std::size_t>(chosen.number())];
     const double offset = chosen.coefficients[0];
     if (joint.prismatic) {

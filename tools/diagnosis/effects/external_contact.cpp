@@ -84,7 +84,7 @@ Candidate contact_with_shapes(const DiagnosisSignals& signals, const ContactSite
 
 /// Appends the candidate windows of one length to `found`.
 void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regression,
-                  const Eigen::MatrixXd& weighed, const ContactSite& site, double length_s,
+                  const Eigen::MatrixXd& weighted, const ContactSite& site, double length_s,
                   std::vector<EventWindow>& found) {
     const Eigen::VectorXd& time = signals.measured.time_s;
     const auto length = static_cast<Eigen::Index>(length_s * signals.measured.rate_hz);
@@ -94,7 +94,7 @@ void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regre
     }
     const Eigen::VectorXd series =
         pulse_series(signals, {time[middle], time[middle + length], push_flanks * length_s});
-    const EventProducts products(site.components, weighed, weighed_share(regression, series));
+    const EventProducts products(site.components, weighted, weighted_share(regression, series));
     const Eigen::VectorXd shape = series.segment(middle, length);
     const Eigen::VectorXd shape_square = shape.cwiseAbs2();
     for (Eigen::Index first = 0; first + length < time.size();
@@ -112,8 +112,8 @@ class ContactScan : public EffectScan {
 
     std::vector<Candidate> candidates(const FittedResidual& residual) const override {
         return scan_contacts(residual.signals, residual.regression,
-                             weighed_residual_away_from_reversals(residual.signals, residual.regression,
-                                                                  residual.coefficients),
+                             weighted_residual_away_from_reversals(residual.signals, residual.regression,
+                                                                   residual.coefficients),
                              sites_);
     }
     /// Gives all contacts at a site the same evidence offset. After the largest ones are chosen, the
@@ -122,7 +122,7 @@ class ContactScan : public EffectScan {
         for (const Candidate* const one : own) {
             for (Candidate* const other : own) {
                 if (one->where == other->where) {
-                    other->extra_price = std::max(other->extra_price, one->extra_price);
+                    other->evidence_offset = std::max(other->evidence_offset, one->evidence_offset);
                 }
             }
         }
@@ -212,20 +212,20 @@ Candidate contact_candidate(const DiagnosisSignals& signals, const ContactSite& 
 }
 
 std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
-                                     const Eigen::MatrixXd& weighed, const std::vector<ContactSite>& sites) {
+                                     const Eigen::MatrixXd& weighted, const std::vector<ContactSite>& sites) {
     std::vector<Candidate> result;
     for (const ContactSite& site : sites) {
         std::vector<EventWindow> windows;
         for (const double length_s : push_lengths_s) {
-            scan_windows(signals, regression, weighed, site, length_s, windows);
+            scan_windows(signals, regression, weighted, site, length_s, windows);
         }
         const std::vector<EventWindow> events = events_of(windows, events_apart_s);
-        if (const std::optional<double> demanded = demanded_by(events)) {
+        if (const std::optional<double> demanded = noise_event_threshold(events)) {
             const EventWindow& best = events.front();
             const ContactPulse pulse{best.start_s, best.end_s, push_flanks * (best.end_s - best.start_s)};
             result.push_back(contact_candidate(signals, site, pulse, pulses_about(pulse, 0.15)));
             result.back().tried = static_cast<double>(windows.size());
-            result.back().extra_price = *demanded;
+            result.back().evidence_offset = *demanded;
         }
     }
     return result;

@@ -12,7 +12,7 @@ constexpr std::array bias_of_axis{ParameterKind{"fx", "N"},   ParameterKind{"fy"
                                   ParameterKind{"fz", "N"},   ParameterKind{"mx", "N·m"},
                                   ParameterKind{"my", "N·m"}, ParameterKind{"mz", "N·m"}};
 
-EffectDisposition extend_by_bias(Extension& extension, const ChosenEffect& chosen) {
+EffectDisposition extend_by_bias(ModelExtension& extension, const ChosenEffect& chosen) {
     for (Eigen::Index i = 0; i < chosen.coefficients.size(); ++i) {
         EffectModel bias;
         bias.name = effect_kinds::ft_bias.name;

@@ -42,7 +42,7 @@ std::vector<Candidate> rotation_candidates(const DiagnosisSignals&, const Fitted
 }
 
 /// Turns the model's sensor frame by the inverse rotation.
-EffectDisposition extend_by_rotation(Extension& extension, const ChosenEffect& chosen) {
+EffectDisposition extend_by_rotation(ModelExtension& extension, const ChosenEffect& chosen) {
     Eigen::Vector3d angles = Eigen::Vector3d::Zero();
     for (Eigen::Index i = 0; i < chosen.coefficients.size(); ++i) {
         angles[static_cast<Eigen::Index>(chosen.shape.columns[static_cast<std::size_t>(i)])] =

@@ -57,7 +57,7 @@ Effect effects::gravity_tilt() {
             .candidates = [](const DiagnosisSignals& signals,
                              std::size_t) { return std::vector{tilt_candidate(signals, 0, 0)}; },
             .extend =
-                [](Extension& extension, const ChosenEffect& chosen) {
+                [](ModelExtension& extension, const ChosenEffect& chosen) {
                     extension.robot.gravity = tilted_gravity(extension.robot.gravity, chosen.coefficients[0],
                                                              chosen.coefficients[1]);
                     return EffectDisposition::fixed;

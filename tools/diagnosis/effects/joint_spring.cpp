@@ -37,7 +37,7 @@ Effect effects::joint_spring() {
             .each = Each::torque_joint,
             .candidates = spring_candidates,
             .plotted_over = over_position,
-            .extend = [](Extension& extension, const ChosenEffect& chosen) {
+            .extend = [](ModelExtension& extension, const ChosenEffect& chosen) {
                 add_column(extension, chosen, on_joint(chosen, effect_kinds::torque_offset), 1);
                 return add_single(extension, chosen, effect_kinds::joint_spring);
             }};

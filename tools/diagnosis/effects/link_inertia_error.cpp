@@ -51,7 +51,7 @@ std::vector<Candidate> link_candidates(const DiagnosisSignals& signals, std::siz
 }
 
 /// Changes the mass and the position of the link's centre of mass in the model.
-EffectDisposition extend_by_link(Extension& extension, const ChosenEffect& chosen) {
+EffectDisposition extend_by_link(ModelExtension& extension, const ChosenEffect& chosen) {
     auto parameters = extension.body(chosen.number());
     const bool with_mass = chosen.shape.columns.front() == 0;
     const double mass = parameters[0];

@@ -79,20 +79,20 @@ std::vector<Candidate> payload_candidates(const DiagnosisSignals& signals, std::
 
 /// Products of the payload's columns, with the weight of the columns while `there` (T, 0 or 1) is 1: their
 /// beginnings and ends influence the spectrum.
-EventProducts products_of_payload(const EffectRegression& regression, const Eigen::MatrixXd& weighed,
+EventProducts products_of_payload(const EffectRegression& regression, const Eigen::MatrixXd& weighted,
                                   const std::vector<EffectColumn>& payload, const Eigen::VectorXd& there) {
-    Eigen::VectorXd share = Eigen::VectorXd::Zero(weighed.cols());
+    Eigen::VectorXd share = Eigen::VectorXd::Zero(weighted.cols());
     for (const EffectColumn::Part& part : payload.front().parts) {
         const Eigen::VectorXd series = part.series.cwiseProduct(there);
-        share[part.output] = series.isZero(0) ? 0 : weighed_share(regression, series)[part.output];
+        share[part.output] = series.isZero(0) ? 0 : weighted_share(regression, series)[part.output];
     }
-    return {payload, weighed, share};
+    return {payload, weighted, share};
 }
 
 /// Number of rows up to the last one with a residual. Rows after the fitted time have none.
-Eigen::Index fitted_rows(const Eigen::MatrixXd& weighed) {
-    Eigen::Index rows = weighed.rows();
-    while (rows > 0 && weighed.row(rows - 1).isZero(0)) {
+Eigen::Index fitted_rows(const Eigen::MatrixXd& weighted) {
+    Eigen::Index rows = weighted.rows();
+    while (rows > 0 && weighted.row(rows - 1).isZero(0)) {
         --rows;
     }
     return rows;
@@ -104,14 +104,14 @@ class PayloadScan : public EffectScan {
     explicit PayloadScan(const DiagnosisSignals& signals) : payload_(payload_columns(signals)) {}
 
     std::vector<Candidate> candidates(const FittedResidual& residual) const override {
-        return scan_taken_payload(residual.signals, residual.regression, residual.weighed, payload_);
+        return scan_taken_payload(residual.signals, residual.regression, residual.weighted, payload_);
     }
     /// Every candidate, chosen or not, must exceed the other windows in the current residual.
     void set_prices(const std::vector<Candidate*>& own, const FittedResidual& residual) const override {
         for (Candidate* const candidate : own) {
-            candidate->extra_price =
-                demanded_of_payload(residual.signals, residual.regression, residual.weighed, payload_,
-                                    candidate->shapes.front().value);
+            candidate->evidence_offset =
+                payload_evidence_threshold(residual.signals, residual.regression, residual.weighted, payload_,
+                                           candidate->shapes.front().value);
         }
     }
 
@@ -119,7 +119,7 @@ class PayloadScan : public EffectScan {
     std::vector<EffectColumn> payload_;
 };
 
-EffectDisposition extend_by_payload(Extension& extension, const ChosenEffect& chosen) {
+EffectDisposition extend_by_payload(ModelExtension& extension, const ChosenEffect& chosen) {
     const double mass = chosen.coefficients[0];
     const Eigen::Vector3d centre = chosen.coefficients.size() == 4
                                        ? Eigen::Vector3d(chosen.coefficients.tail<3>() / mass)
@@ -168,12 +168,12 @@ Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<Effec
 }
 
 std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
-                                          const Eigen::MatrixXd& weighed,
+                                          const Eigen::MatrixXd& weighted,
                                           const std::vector<EffectColumn>& payload) {
     constexpr double least_share = 0.05; // of the time, before and after the payload is picked up
     const EventProducts products =
-        products_of_payload(regression, weighed, payload, Eigen::VectorXd::Ones(signals.rows()));
-    const Eigen::Index rows = fitted_rows(weighed);
+        products_of_payload(regression, weighted, payload, Eigen::VectorXd::Ones(signals.rows()));
+    const Eigen::Index rows = fitted_rows(weighted);
     const auto margin = static_cast<Eigen::Index>(least_share * static_cast<double>(rows));
     Eigen::VectorXd moments = Eigen::VectorXd::Zero(products.moment.cols());
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(products.square.cols());
@@ -198,16 +198,16 @@ std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const
     return {std::move(candidate)};
 }
 
-double demanded_of_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
-                           const Eigen::MatrixXd& weighed, const std::vector<EffectColumn>& payload,
-                           double taken_s) {
+double payload_evidence_threshold(const DiagnosisSignals& signals, const EffectRegression& regression,
+                                  const Eigen::MatrixXd& weighted, const std::vector<EffectColumn>& payload,
+                                  double taken_s) {
     const Eigen::VectorXd& time = signals.measured.time_s;
-    const Eigen::Index rows = fitted_rows(weighed);
+    const Eigen::Index rows = fitted_rows(weighted);
     const Eigen::Index length = (time.head(rows).array() >= taken_s).count();
     const auto every_other = Eigen::VectorXd::NullaryExpr(signals.rows(), [length](Eigen::Index row) {
         return row / std::max<Eigen::Index>(1, length) % 2 == 0 ? 1.0 : 0.0;
     });
-    const EventProducts products = products_of_payload(regression, weighed, payload, every_other);
+    const EventProducts products = products_of_payload(regression, weighted, payload, every_other);
     std::vector<EventWindow> windows;
     for (Eigen::Index first = 0; length > 0 && first + length <= rows;
          first += std::max<Eigen::Index>(1, length / 8)) {
@@ -215,7 +215,7 @@ double demanded_of_payload(const DiagnosisSignals& signals, const EffectRegressi
                                           products.square.middleRows(first, length).colwise().sum());
         windows.push_back({gain, time[first], time[first + length - 1]});
     }
-    return demanded_by(events_of(std::move(windows), events_apart_s)).value_or(0);
+    return noise_event_threshold(events_of(std::move(windows), events_apart_s)).value_or(0);
 }
 
 Effect effects::payload() {

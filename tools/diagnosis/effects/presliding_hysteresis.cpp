@@ -66,7 +66,7 @@ Effect effects::presliding_hysteresis() {
             .each = Each::torque_joint,
             .candidates = presliding_candidates,
             .plotted_over = over_travel,
-            .extend = [](Extension& extension, const ChosenEffect& chosen) {
+            .extend = [](ModelExtension& extension, const ChosenEffect& chosen) {
                 add_single(extension, chosen, effect_kinds::coulomb_friction);
                 return EffectDisposition::approximated;
             }};

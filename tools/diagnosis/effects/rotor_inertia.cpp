@@ -30,7 +30,7 @@ Effect effects::rotor_inertia() {
                                     at.signals.measured.motion.acceleration.col(at.joint()));
                 },
             .extend =
-                [](Extension& extension, const ChosenEffect& chosen) {
+                [](ModelExtension& extension, const ChosenEffect& chosen) {
                     return add_single(extension, chosen, effect_kinds::rotor_inertia);
                 }};
 }

@@ -49,7 +49,7 @@ std::vector<Candidate> stribeck_candidates(const DiagnosisSignals& signals, std:
     return {std::move(result)};
 }
 
-EffectDisposition extend_by_stribeck(Extension& extension, const ChosenEffect& chosen) {
+EffectDisposition extend_by_stribeck(ModelExtension& extension, const ChosenEffect& chosen) {
     EffectModel faded = on_joint(chosen, effect_kinds::stribeck_friction);
     faded.stribeck_velocity = chosen.shape.value;
     add_column(extension, chosen, faded, 1);

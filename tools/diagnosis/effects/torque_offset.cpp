@@ -26,7 +26,7 @@ Effect effects::torque_offset() {
                 },
             .plotted_over = over_time,
             .extend =
-                [](Extension& extension, const ChosenEffect& chosen) {
+                [](ModelExtension& extension, const ChosenEffect& chosen) {
                     return add_single(extension, chosen, effect_kinds::torque_offset);
                 }};
 }

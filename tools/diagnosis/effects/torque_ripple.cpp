@@ -31,7 +31,7 @@ struct RippleGain {
 /// Sum of squares that a ripple would explain, for each number of cycles per turn. The noise level is that of
 /// the ripple's current frequency.
 std::vector<RippleGain> ripple_gains(const DiagnosisSignals& signals, const EffectRegression& regression,
-                                     const Eigen::MatrixXd& weighed, Eigen::Index joint) {
+                                     const Eigen::MatrixXd& weighted, Eigen::Index joint) {
     const Eigen::VectorXd position = signals.measured.motion.position.col(joint);
     const Eigen::VectorXd velocity = signals.measured.motion.velocity.col(joint);
     const double bin_hz = 1 / (2 * SpectralRows::hop_s);
@@ -41,7 +41,7 @@ std::vector<RippleGain> ripple_gains(const DiagnosisSignals& signals, const Effe
     std::vector<RippleGain> result;
     for (int cycles = fewest_cycles; cycles <= most_cycles; ++cycles) {
         phase *= once;
-        const std::complex<double> product = (phase * weighed.col(joint).array()).sum();
+        const std::complex<double> product = (phase * weighted.col(joint).array()).sum();
         double energy = 0;
         for (Eigen::Index row = 0; row < position.size(); ++row) {
             const double frequency_hz = std::abs(cycles * velocity[row]) / (2 * std::numbers::pi);
@@ -81,11 +81,11 @@ class RippleScan : public EffectScan {
     std::vector<Candidate> candidates(const FittedResidual& residual) const override {
         const DiagnosisSignals& signals = residual.signals;
         // without the unnamed effects: a free function of the position can hide a ripple
-        const Eigen::MatrixXd weighed = weighed_residual(residual.regression, residual.named);
+        const Eigen::MatrixXd weighted = weighted_residual(residual.regression, residual.named);
         std::vector<Candidate> result;
         for (std::size_t joint = 0; !signals.wrench() && joint < signals.joints(); ++joint) {
             const std::vector<int> cycles = best_cycles(
-                ripple_gains(signals, residual.regression, weighed, static_cast<Eigen::Index>(joint)));
+                ripple_gains(signals, residual.regression, weighted, static_cast<Eigen::Index>(joint)));
             if (!cycles.empty()) {
                 result.push_back(ripple_candidate(signals, joint, cycles));
                 result.back().tried = static_cast<double>(most_cycles) / static_cast<double>(cycles.size());
@@ -96,7 +96,7 @@ class RippleScan : public EffectScan {
 };
 
 /// A wave with any phase is the sum of a sine and a cosine.
-EffectDisposition extend_by_ripple(Extension& extension, const ChosenEffect& chosen) {
+EffectDisposition extend_by_ripple(ModelExtension& extension, const ChosenEffect& chosen) {
     EffectModel wave = on_joint(chosen, effect_kinds::torque_ripple);
     wave.cycles_per_rev = chosen.shape.value;
     const double amplitude = chosen.coefficients.norm();

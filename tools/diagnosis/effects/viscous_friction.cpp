@@ -26,7 +26,7 @@ Effect effects::viscous_friction() {
                 },
             .plotted_over = over_velocity,
             .extend =
-                [](Extension& extension, const ChosenEffect& chosen) {
+                [](ModelExtension& extension, const ChosenEffect& chosen) {
                     return add_single(extension, chosen, effect_kinds::viscous_friction);
                 }};
 }

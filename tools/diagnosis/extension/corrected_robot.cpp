@@ -23,7 +23,7 @@ double JointDynamics::*member_of(const std::string& effect) {
 }
 
 /// The link's parameters with the correction. At an F/T sensor only the part beyond it was measured.
-InertialParameters corrected_link(const Extension& extension, std::size_t link,
+InertialParameters corrected_link(const ModelExtension& extension, std::size_t link,
                                   const InertialParameters& found) {
     const RobotJoint& joint = extension.robot.joints[link];
     const bool divided = extension.kind == OutputKind::wrench && extension.robot.sensor &&
@@ -32,7 +32,7 @@ InertialParameters corrected_link(const Extension& extension, std::size_t link,
                    : found;
 }
 
-void correct_links(RobotExport& result, const Extension& extension) {
+void correct_links(RobotExport& result, const ModelExtension& extension) {
     const auto bodies = static_cast<std::size_t>(extension.bodies.size() / 10);
     const std::size_t first = extension.robot.joints.size() - bodies;
     for (std::size_t body = 0; body < bodies; ++body) {
@@ -53,7 +53,7 @@ std::string text_of(const ExtensionColumn& column, OutputKind kind) {
 }
 
 /// Returns whether least squares of each joint determine a finding that the causes leave out.
-bool has_column(const Extension& extension, const CarriedFinding& carried) {
+bool has_column(const ModelExtension& extension, const ExtendedFinding& carried) {
     return std::ranges::any_of(extension.columns, [&](const ExtensionColumn& column) {
         return text_of(column, extension.kind) == carried.effect + " at " + carried.where;
     });
@@ -61,7 +61,7 @@ bool has_column(const Extension& extension, const CarriedFinding& carried) {
 
 } // namespace
 
-RobotExport corrected_robot(const Extension& extension) {
+RobotExport corrected_robot(const ModelExtension& extension) {
     RobotExport result{extension.robot, std::vector<JointDynamics>(extension.robot.joints.size()), {}};
     correct_links(result, extension);
     for (const ExtensionColumn& column : extension.columns) {
@@ -73,7 +73,7 @@ RobotExport corrected_robot(const Extension& extension) {
             result.left_out.push_back(text_of(column, extension.kind));
         }
     }
-    for (const CarriedFinding& carried : extension.carried) {
+    for (const ExtendedFinding& carried : extension.carried) {
         if (carried.how == EffectDisposition::left_out && !has_column(extension, carried)) {
             result.left_out.push_back(carried.effect + " at " + carried.where);
         }

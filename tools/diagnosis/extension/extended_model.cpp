@@ -55,7 +55,7 @@ InputModel filters(double velocity_pole, double acceleration_pole, const Trainin
 /// Prediction of the extension along recorded positions.
 class Prediction {
   public:
-    Prediction(const Extension& extension, const TrainingData& data)
+    Prediction(const ModelExtension& extension, const TrainingData& data)
         : data_(data), chain_(chain_model(extension.robot, extension.kind)),
           gain_(to_vector(extension.output_gain)),
           parameters_(extension.bodies.size() + static_cast<Index>(extension.columns.size())) {
@@ -153,7 +153,7 @@ struct StartingPoint {
     MatrixXd covariance;
 };
 
-StartingPoint starting_point(const Extension& extension, const Prediction& prediction) {
+StartingPoint starting_point(const ModelExtension& extension, const Prediction& prediction) {
     constexpr Index states = 300;
     const MatrixXd regressor =
         stacked_regressor(extension.robot, extension.kind, random_motion(extension.robot, states, 1));
@@ -196,7 +196,7 @@ void set_start(PhysicsModel& physics, const StartingPoint& start) {
 
 } // namespace
 
-TrainedModel extended_model(const Extension& extension, std::span<const Recording> recordings) {
+TrainedModel extended_model(const ModelExtension& extension, std::span<const Recording> recordings) {
     const TrainingData data = gather_training_data(recordings);
     const Prediction prediction(extension, data);
     PhysicsModel physics;

@@ -16,6 +16,6 @@ namespace dfdyn::tools {
 /// joint's last positions (up to 0.2 s of them, see mean_difference_row), with the poles that predict
 /// `recordings` best. Limits are ten times the recorded maxima. Throws InputError if the recordings are
 /// shorter than a window.
-TrainedModel extended_model(const Extension& extension, std::span<const Recording> recordings);
+TrainedModel extended_model(const ModelExtension& extension, std::span<const Recording> recordings);
 
 } // namespace dfdyn::tools

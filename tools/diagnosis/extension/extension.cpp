@@ -17,12 +17,12 @@ namespace dfdyn::tools {
 namespace {
 
 /// Adds the nuisance parameters, which are no findings: small mass errors and torque constants.
-void add_nuisance(Extension& extension, const DiagnosisWork& work) {
-    const Explanation& explanation = work.explanation;
-    const Eigen::Index bodies = explanation.uncertain_masses;
-    const auto count = static_cast<Eigen::Index>(explanation.nuisance.size());
+void add_nuisance(ModelExtension& extension, const DiagnosisWork& work) {
+    const FittedEffects& fitted_effects = work.fitted_effects;
+    const Eigen::Index bodies = fitted_effects.uncertain_masses;
+    const auto count = static_cast<Eigen::Index>(fitted_effects.nuisance.size());
     for (Eigen::Index i = 0; i < count; ++i) {
-        const double factor = explanation.nuisance_factor(i);
+        const double factor = fitted_effects.nuisance_factor(i);
         if (i < bodies) {
             extension.bodies.segment<10>(10 * i) *= factor;
         } else {
@@ -32,16 +32,16 @@ void add_nuisance(Extension& extension, const DiagnosisWork& work) {
 }
 
 /// Replaces the columns of an output by those of plain least squares, beside the extension's rigid body.
-void take_least_squares(Extension& extension, const DiagnosisWork& work, Eigen::Index output,
+void take_least_squares(ModelExtension& extension, const DiagnosisWork& work, Eigen::Index output,
                         const Eigen::VectorXd& coefficients) {
     constexpr double least_gain = 0.1;
     const std::string joint = numbered("joint", static_cast<std::size_t>(output));
     std::erase_if(extension.columns,
                   [output](const ExtensionColumn& column) { return column.effect.row == output; });
-    std::erase_if(extension.carried, [&joint](const CarriedFinding& carried) {
+    std::erase_if(extension.carried, [&joint](const ExtendedFinding& carried) {
         return carried.where == joint && effect_named(carried.effect).textbook.has_value();
     });
-    for (CarriedFinding& carried : extension.carried) {
+    for (ExtendedFinding& carried : extension.carried) {
         if (carried.where == joint) {
             carried.how = EffectDisposition::left_out;
         }
@@ -71,7 +71,7 @@ void take_least_squares(Extension& extension, const DiagnosisWork& work, Eigen::
 }
 
 /// Takes plain least squares at all outputs where it is the extended model.
-void take_least_squares(Extension& extension, const DiagnosisWork& work) {
+void take_least_squares(ModelExtension& extension, const DiagnosisWork& work) {
     const std::vector<bool>& chosen = work.diagnosis.by_least_squares;
     if (std::ranges::find(chosen, true) == chosen.end()) {
         return;
@@ -91,7 +91,7 @@ void take_least_squares(Extension& extension, const DiagnosisWork& work) {
 
 } // namespace
 
-Extension nominal_extension(const DiagnosisWork& work) {
+ModelExtension nominal_extension(const DiagnosisWork& work) {
     const DiagnosisSignals& signals = *work.signals;
     return {signals.robot,
             signals.kind,
@@ -101,24 +101,24 @@ Extension nominal_extension(const DiagnosisWork& work) {
             {}};
 }
 
-Extension extension_of(const DiagnosisWork& work) {
-    Extension extension = nominal_extension(work);
-    const Explanation& explanation = work.explanation;
-    for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
-        const Candidate& candidate = explanation.candidates[explanation.chosen[i].candidate];
+ModelExtension extension_of(const DiagnosisWork& work) {
+    ModelExtension extension = nominal_extension(work);
+    const FittedEffects& fitted_effects = work.fitted_effects;
+    for (std::size_t i = 0; i < fitted_effects.chosen.size(); ++i) {
+        const Candidate& candidate = fitted_effects.candidates[fitted_effects.chosen[i].candidate];
         if (!candidate.named()) {
             continue;
         }
-        const EffectShape& shape = candidate.shapes[explanation.chosen[i].shape];
-        const Eigen::VectorXd coefficients = explanation.coefficients(i);
-        const Eigen::VectorXd deviations = explanation.covariance(i).diagonal().cwiseMax(0).cwiseSqrt();
+        const EffectShape& shape = candidate.shapes[fitted_effects.chosen[i].shape];
+        const Eigen::VectorXd coefficients = fitted_effects.coefficients(i);
+        const Eigen::VectorXd deviations = fitted_effects.covariance(i).diagonal().cwiseMax(0).cwiseSqrt();
         const ChosenEffect chosen{*work.signals, candidate, shape, coefficients, deviations};
         const Effect& effect = effect_named(candidate.effect);
         const EffectDisposition how =
             effect.extend == nullptr ? EffectDisposition::left_out : effect.extend(extension, chosen);
         extension.carried.push_back({candidate.effect, candidate.where, how});
     }
-    for (const StandingContact& push : work.pushes) {
+    for (const StationaryContact& push : work.pushes) {
         extension.carried.push_back(
             {effects::external_contact().name, numbered("joint", push.joint), EffectDisposition::left_out});
     }
@@ -128,8 +128,8 @@ Extension extension_of(const DiagnosisWork& work) {
     return extension;
 }
 
-Extension names_only(const DiagnosisWork& work, const Extension& extension) {
-    Extension result = nominal_extension(work);
+ModelExtension names_only(const DiagnosisWork& work, const ModelExtension& extension) {
+    ModelExtension result = nominal_extension(work);
     result.columns = extension.columns;
     for (ExtensionColumn& column : result.columns) {
         column.deviation = std::max(std::abs(column.value), column.deviation);

@@ -20,20 +20,20 @@ struct ExtensionColumn {
 };
 
 /// Representation of a finding in the extended model.
-struct CarriedFinding {
+struct ExtendedFinding {
     using How = EffectDisposition;
     std::string effect, where;
     How how = How::left_out;
 };
 
 /// A robot's rigid body and the findings of a diagnosis, as a parametric model represents them.
-struct Extension {
+struct ModelExtension {
     Robot robot; ///< with the estimated geometry, gravity and sensor frame
     OutputKind kind = OutputKind::joint_torque;
     Eigen::VectorXd bodies;               ///< ten inertial parameters per body
     std::vector<ExtensionColumn> columns; ///< in the order of the physics' columns
     Eigen::VectorXd output_gain;          ///< output per N·m (N)
-    std::vector<CarriedFinding> carried;  ///< one per chosen effect
+    std::vector<ExtendedFinding> carried; ///< one per chosen effect
 
     /// Returns the ten parameters of a link. `link`: from 0.
     auto body(Eigen::Index link) {
@@ -43,14 +43,14 @@ struct Extension {
 };
 
 /// Returns the robot as described in its file, without effects.
-Extension nominal_extension(const DiagnosisWork& work);
+ModelExtension nominal_extension(const DiagnosisWork& work);
 
 /// Returns the robot with every effect that the diagnosis chose, and with the estimated masses if masses are
 /// uncertain.
-Extension extension_of(const DiagnosisWork& work);
+ModelExtension extension_of(const DiagnosisWork& work);
 
 /// Returns the nominal robot with the columns of `extension`, without their estimated values. Each
 /// coefficient starts at zero, with the standard deviation of the complete effect.
-Extension names_only(const DiagnosisWork& work, const Extension& extension);
+ModelExtension names_only(const DiagnosisWork& work, const ModelExtension& extension);
 
 } // namespace dfdyn::tools

@@ -34,7 +34,7 @@ EffectModel on_joint(const ChosenEffect& chosen, const EffectKind& kind) {
     return effect;
 }
 
-void add_column(Extension& extension, const EffectModel& effect, double value, double deviation) {
+void add_column(ModelExtension& extension, const EffectModel& effect, double value, double deviation) {
     deviation = std::max(deviation, 0.1 * std::abs(value));
     const auto same = std::ranges::find_if(
         extension.columns, [&](const ExtensionColumn& column) { return same_column(column.effect, effect); });
@@ -46,17 +46,17 @@ void add_column(Extension& extension, const EffectModel& effect, double value, d
     }
 }
 
-void add_column(Extension& extension, const ChosenEffect& chosen, const EffectModel& effect,
+void add_column(ModelExtension& extension, const ChosenEffect& chosen, const EffectModel& effect,
                 Eigen::Index coefficient) {
     add_column(extension, effect, chosen.coefficients[coefficient], chosen.deviations[coefficient]);
 }
 
-EffectDisposition add_single(Extension& extension, const ChosenEffect& chosen, const EffectKind& kind) {
+EffectDisposition add_single(ModelExtension& extension, const ChosenEffect& chosen, const EffectKind& kind) {
     add_column(extension, chosen, on_joint(chosen, kind), 0);
     return EffectDisposition::adapting;
 }
 
-EffectDisposition add_gain(Extension& extension, const ChosenEffect& chosen) {
+EffectDisposition add_gain(ModelExtension& extension, const ChosenEffect& chosen) {
     if (chosen.coefficients[0] < -0.9) {
         return EffectDisposition::left_out;
     }
@@ -64,7 +64,7 @@ EffectDisposition add_gain(Extension& extension, const ChosenEffect& chosen) {
     return EffectDisposition::fixed;
 }
 
-void scale_output(Extension& extension, Eigen::Index output, double factor, bool effects_too) {
+void scale_output(ModelExtension& extension, Eigen::Index output, double factor, bool effects_too) {
     extension.output_gain[output] *= factor;
     for (ExtensionColumn& column : extension.columns) {
         if (!effects_too && column.effect.row == output) {
@@ -74,7 +74,7 @@ void scale_output(Extension& extension, Eigen::Index output, double factor, bool
     }
 }
 
-void sort_columns(Extension& extension) {
+void sort_columns(ModelExtension& extension) {
     std::vector<EffectModel> effects;
     for (const ExtensionColumn& column : extension.columns) {
         effects.push_back(column.effect);

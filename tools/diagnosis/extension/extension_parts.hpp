@@ -26,23 +26,23 @@ EffectModel on_joint(const ChosenEffect& chosen, const EffectKind& kind);
 
 /// Adds a column, or adds `value` to an equal column. Coefficients continue to adapt: their prior standard
 /// deviation is at least a tenth of the value, however well the recording determined them.
-void add_column(Extension& extension, const EffectModel& effect, double value, double deviation);
+void add_column(ModelExtension& extension, const EffectModel& effect, double value, double deviation);
 
 /// Adds a column for one of the effect's coefficients.
-void add_column(Extension& extension, const ChosenEffect& chosen, const EffectModel& effect,
+void add_column(ModelExtension& extension, const ChosenEffect& chosen, const EffectModel& effect,
                 Eigen::Index coefficient);
 
 /// Adds a column of `kind` for the effect's first coefficient.
-EffectDisposition add_single(Extension& extension, const ChosenEffect& chosen, const EffectKind& kind);
+EffectDisposition add_single(ModelExtension& extension, const ChosenEffect& chosen, const EffectKind& kind);
 
 /// Applies the gain of an actuator or of a sensor axis. The gain multiplies everything that the model
 /// predicts on that output.
-EffectDisposition add_gain(Extension& extension, const ChosenEffect& chosen);
+EffectDisposition add_gain(ModelExtension& extension, const ChosenEffect& chosen);
 
 /// Multiplies the rigid body's part of an output. `effects_too`: also multiplies the output's columns.
-void scale_output(Extension& extension, Eigen::Index output, double factor, bool effects_too);
+void scale_output(ModelExtension& extension, Eigen::Index output, double factor, bool effects_too);
 
 /// Sorts the columns into the order of the physics' columns.
-void sort_columns(Extension& extension);
+void sort_columns(ModelExtension& extension);
 
 } // namespace dfdyn::tools

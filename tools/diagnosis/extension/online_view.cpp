@@ -55,7 +55,7 @@ ModelTraining quick_training(const Structure& structure) {
 }
 
 /// Returns the effects for which a training can add columns without a search, one per joint.
-std::vector<std::string> trainable_names(const Extension& extension) {
+std::vector<std::string> trainable_names(const ModelExtension& extension) {
     std::vector<std::string> names;
     for (const ExtensionColumn& column : extension.columns) {
         const std::string& name = column.effect.name;
@@ -81,7 +81,7 @@ OnlineError trained_error(std::string learner, const ModelTraining& training, Ou
     return error_of(std::move(learner), model, joined, true);
 }
 
-void add_feature_learners(OnlineView& view, const DiagnosisWork& work, const Extension& extension,
+void add_feature_learners(OnlineView& view, const DiagnosisWork& work, const ModelExtension& extension,
                           std::span<const Recording> recordings, const Recording& joined) {
     const OutputKind outputs = work.signals->kind;
     const auto add = [&](std::string learner, const ModelTraining& training) {
@@ -100,8 +100,8 @@ void add_feature_learners(OnlineView& view, const DiagnosisWork& work, const Ext
 
 } // namespace
 
-OnlineView online_view(const DiagnosisWork& work, const Extension& extension, const TrainedModel& written,
-                       std::span<const Recording> recordings) {
+OnlineView online_view(const DiagnosisWork& work, const ModelExtension& extension,
+                       const TrainedModel& written, std::span<const Recording> recordings) {
     const Recording joined = joined_recording(recordings);
     OnlineView view;
     const TrainedModel nominal = extended_model(nominal_extension(work), recordings);

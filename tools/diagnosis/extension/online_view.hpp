@@ -33,7 +33,7 @@ struct OnlineView {
 ///
 /// On recordings of up to 40,000 rows it also runs NP and SPK with 100 random features, without and with the
 /// named effects. Their hyperparameters are fitted to the recordings; their weights start at zero.
-OnlineView online_view(const DiagnosisWork& work, const Extension& extension, const TrainedModel& written,
-                       std::span<const Recording> recordings);
+OnlineView online_view(const DiagnosisWork& work, const ModelExtension& extension,
+                       const TrainedModel& written, std::span<const Recording> recordings);
 
 } // namespace dfdyn::tools

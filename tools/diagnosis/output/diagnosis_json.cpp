@@ -51,11 +51,11 @@ ordered_json to_json(const FoundParameter& parameter) {
     return entry;
 }
 
-ordered_json to_json(const GrantedQuantity& granted) {
-    ordered_json entry = to_json(granted.parameter);
-    entry["where"] = granted.where;
-    if (granted.given) {
-        entry["given"] = *granted.given;
+ordered_json to_json(const NuisanceEstimate& nuisance) {
+    ordered_json entry = to_json(nuisance.parameter);
+    entry["where"] = nuisance.where;
+    if (nuisance.given) {
+        entry["given"] = *nuisance.given;
     }
     return entry;
 }
@@ -135,11 +135,11 @@ ordered_json diagnosis_json(const Diagnosis& diagnosis) {
             to_json(finding, diagnosis.output_names[static_cast<std::size_t>(finding.output)]));
     }
     json["findings"] = std::move(findings);
-    ordered_json granted = ordered_json::array();
-    for (const GrantedQuantity& one : diagnosis.granted) {
-        granted.push_back(to_json(one));
+    ordered_json nuisance_estimates = ordered_json::array();
+    for (const NuisanceEstimate& one : diagnosis.nuisance_estimates) {
+        nuisance_estimates.push_back(to_json(one));
     }
-    json["granted"] = std::move(granted);
+    json["granted"] = std::move(nuisance_estimates);
     ordered_json unexplained = ordered_json::array();
     for (const Unexplained& entry : diagnosis.unexplained) {
         unexplained.push_back({{"output", diagnosis.output_names[static_cast<std::size_t>(entry.output)]},

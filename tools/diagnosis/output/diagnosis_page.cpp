@@ -100,7 +100,7 @@ std::string gain_sentence(const Diagnosis& diagnosis) {
 /// Returns a summary of three sentences.
 std::string summary(const DiagnosisCase& one) {
     const Diagnosis& diagnosis = one.work.diagnosis;
-    if (diagnosis.nominal.rms.size() == 0 || one.work.explanation.candidates.empty()) {
+    if (diagnosis.nominal.rms.size() == 0 || one.work.fitted_effects.candidates.empty()) {
         return "The recording " + recording_names(one.recordings) +
                " cannot answer what the simulation gets wrong. The reasons are below. No cause is named, and "
                "no model was written.";
@@ -159,17 +159,17 @@ ReportTable error_table(const Diagnosis& diagnosis) {
 }
 
 std::string carried_words(const DiagnosisCase& one, const Finding& finding) {
-    const auto found = std::ranges::find_if(one.extension.carried, [&](const CarriedFinding& carried) {
+    const auto found = std::ranges::find_if(one.extension.carried, [&](const ExtendedFinding& carried) {
         return carried.effect == finding.effect && carried.where == finding.where;
     });
     if (found == one.extension.carried.end()) {
         return "–";
     }
-    static const std::map<CarriedFinding::How, const char*> words{
-        {CarriedFinding::How::adapting, "adapting"},
-        {CarriedFinding::How::fixed, "constant"},
-        {CarriedFinding::How::approximated, "as Coulomb"},
-        {CarriedFinding::How::left_out, "left out"}};
+    static const std::map<ExtendedFinding::How, const char*> words{
+        {ExtendedFinding::How::adapting, "adapting"},
+        {ExtendedFinding::How::fixed, "constant"},
+        {ExtendedFinding::How::approximated, "as Coulomb"},
+        {ExtendedFinding::How::left_out, "left out"}};
     return words.at(found->how);
 }
 
@@ -206,7 +206,7 @@ ReportTable granted_table(const Diagnosis& diagnosis) {
     table.note =
         "Torque constants: nobody gave them. Masses: the recording fits better when each may be a few "
         "percent off, but no single link stands out. The extended model starts at these.";
-    for (const GrantedQuantity& one : diagnosis.granted) {
+    for (const NuisanceEstimate& one : diagnosis.nuisance_estimates) {
         const FoundParameter& parameter = one.parameter;
         table.rows.push_back({one.where, parameter.name == "mass" ? "mass" : "torque constant",
                               parameter.value, interval_words(parameter),
@@ -221,7 +221,7 @@ PageSection overview_section(const DiagnosisCase& one) {
     if (!one.work.diagnosis.findings.empty()) {
         section.tables.push_back(findings_table(one));
     }
-    if (!one.work.diagnosis.granted.empty()) {
+    if (!one.work.diagnosis.nuisance_estimates.empty()) {
         section.tables.push_back(granted_table(one.work.diagnosis));
     }
     return section;

@@ -15,7 +15,7 @@ struct DiagnosisCase {
     const Robot& robot;
     const std::vector<Recording>& recordings;
     const DiagnosisWork& work;
-    const Extension& extension;
+    const ModelExtension& extension;
     const OnlineView& online;
     std::string full_data{}; ///< name of the table of all rows beside the page; empty: none
 };

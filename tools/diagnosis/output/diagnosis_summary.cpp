@@ -110,17 +110,17 @@ void print_findings(std::ostream& out, const Diagnosis& diagnosis) {
 }
 
 /// Returns whether a nuisance parameter differs noticeably from the value in the file.
-bool is_new(const GrantedQuantity& granted) {
+bool is_new(const NuisanceEstimate& nuisance) {
     constexpr double noticeable = 0.01;
-    return !granted.given || std::abs(granted.parameter.value / *granted.given - 1) > noticeable;
+    return !nuisance.given || std::abs(nuisance.parameter.value / *nuisance.given - 1) > noticeable;
 }
 
 /// Prints all nuisance parameters with one name on one line.
 void print_granted(std::ostream& out, const Diagnosis& diagnosis, const std::string& name, const char* lead) {
     std::string list;
-    for (const GrantedQuantity& one : diagnosis.granted) {
+    for (const NuisanceEstimate& one : diagnosis.nuisance_estimates) {
         if (one.parameter.name == name && is_new(one)) {
-            list.append(list.empty() ? "" : "; ").append(granted_words(one));
+            list.append(list.empty() ? "" : "; ").append(nuisance_words(one));
         }
     }
     if (!list.empty()) {
@@ -155,11 +155,11 @@ void print_unexplained(std::ostream& out, const Diagnosis& diagnosis) {
 }
 
 /// Prints the findings with one disposition on one line, each once.
-void print_not_whole(std::ostream& out, const std::vector<CarriedFinding>& carried, CarriedFinding::How how,
+void print_not_whole(std::ostream& out, const std::vector<ExtendedFinding>& carried, ExtendedFinding::How how,
                      const char* lead) {
     std::set<std::string> told;
     std::string list;
-    for (const CarriedFinding& one : carried) {
+    for (const ExtendedFinding& one : carried) {
         const std::string cause = cause_words(OtherCause{one.effect, one.where, {}});
         if (one.how == how && told.insert(cause).second) {
             list.append(list.empty() ? "" : "; ").append(cause);
@@ -170,16 +170,16 @@ void print_not_whole(std::ostream& out, const std::vector<CarriedFinding>& carri
     }
 }
 
-void print_carried(std::ostream& out, const std::vector<CarriedFinding>& carried) {
-    print_not_whole(out, carried, CarriedFinding::How::approximated,
+void print_carried(std::ostream& out, const std::vector<ExtendedFinding>& carried) {
+    print_not_whole(out, carried, ExtendedFinding::How::approximated,
                     "the extended model has, as Coulomb friction only: ");
-    print_not_whole(out, carried, CarriedFinding::How::left_out, "the extended model leaves out: ");
+    print_not_whole(out, carried, ExtendedFinding::How::left_out, "the extended model leaves out: ");
 }
 
 } // namespace
 
 void print_diagnosis(std::ostream& out, const Diagnosis& diagnosis,
-                     const std::vector<CarriedFinding>& carried) {
+                     const std::vector<ExtendedFinding>& carried) {
     print_suspicions(out, diagnosis);
     if (diagnosis.nominal.rms.size() == 0) {
         return;

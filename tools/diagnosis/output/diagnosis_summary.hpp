@@ -12,6 +12,6 @@ namespace dfdyn::tools {
 /// Prints a diagnosis on a terminal, in one screen: first why the recording may be unsuitable, then the
 /// errors per output, the findings, the unexplained rest, and what the extended model lacks.
 void print_diagnosis(std::ostream& out, const Diagnosis& diagnosis,
-                     const std::vector<CarriedFinding>& carried);
+                     const std::vector<ExtendedFinding>& carried);
 
 } // namespace dfdyn::tools

@@ -78,10 +78,10 @@ std::string interval_words(const FoundParameter& parameter) {
     return rounded_text(parameter.low) + " … " + high;
 }
 
-std::string granted_words(const GrantedQuantity& granted) {
-    std::string text = granted.where + " " + rounded_text(granted.parameter.value);
-    text.append(" (").append(interval_words(granted.parameter)).append(")");
-    return granted.given ? text.append(" instead of ").append(rounded_text(*granted.given)) : text;
+std::string nuisance_words(const NuisanceEstimate& nuisance) {
+    std::string text = nuisance.where + " " + rounded_text(nuisance.parameter.value);
+    text.append(" (").append(interval_words(nuisance.parameter)).append(")");
+    return nuisance.given ? text.append(" instead of ").append(rounded_text(*nuisance.given)) : text;
 }
 
 std::string cause_words(const OtherCause& cause) { return words(cause.effect, cause.where); }

@@ -33,6 +33,6 @@ std::string cause_words(const Finding& finding);
 std::string cause_words(const OtherCause& cause);
 
 /// Returns `link2 3.1 (2.9 … 3.3) instead of 3`, without the unit.
-std::string granted_words(const GrantedQuantity& granted);
+std::string nuisance_words(const NuisanceEstimate& nuisance);
 
 } // namespace dfdyn::tools

@@ -37,7 +37,7 @@ class Dependence {
         for (const std::string& input : candidate_.inputs) {
             candidate_.detail += input;
         }
-        candidate_.extra_price = price_of_no_name;
+        candidate_.evidence_offset = price_of_no_name;
     }
 
     void add_function(const Eigen::VectorXd& series) {

@@ -38,8 +38,9 @@ double price(const SearchProblem& problem, const ChosenShape& chosen, double exp
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
     const SearchCandidate::Shape& shape = candidate.shapes[chosen.shape];
     const double parameters = static_cast<double>(shape.columns.size()) - 0.5 * shape.bounded;
-    return candidate.extra_price +
-           std::log(candidate.rivals * static_cast<double>(candidate.shapes.size()) * candidate.tried) +
+    return candidate.evidence_offset +
+           std::log(candidate.candidates_of_class * static_cast<double>(candidate.shapes.size()) *
+                    candidate.tried) +
            price_of_coefficients(parameters, explained);
 }
 

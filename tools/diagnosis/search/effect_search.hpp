@@ -18,10 +18,10 @@ struct SearchCandidate {
         NearestCoefficients nearest = {};
     };
     std::vector<Shape> shapes;
-    std::size_t family = 0; ///< at most one candidate with the same number is chosen; 0: no family
-    double rivals = 1;      ///< number of candidates of its class
-    double tried = 1;       ///< number of alternatives from which it was selected beforehand
-    double extra_price = 0; ///< additional penalty
+    std::size_t family = 0;         ///< at most one candidate with the same number is chosen; 0: no family
+    double candidates_of_class = 1; ///< number of candidates of its class
+    double tried = 1;               ///< number of alternatives from which it was selected beforehand
+    double evidence_offset = 0;     ///< additional penalty
 };
 
 /// A candidate and one of its shapes.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/search/robust_values.hpp"
 
-#include "tools/diagnosis/search/settle_explanation.hpp"
+#include "tools/diagnosis/search/prune_effects.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Returns the problem of the named effects alone. Its columns are those of `at.named`, numbered from 0.
-SearchProblem problem_of_named(const Explanation& at) {
+SearchProblem problem_of_named(const FittedEffects& at) {
     std::vector<Index> position(static_cast<std::size_t>(at.problem.sums.gram.rows()));
     for (std::size_t i = 0; i < at.named.columns.size(); ++i) {
         position[static_cast<std::size_t>(at.named.columns[i])] = static_cast<Index>(i);
@@ -37,7 +37,7 @@ SearchProblem problem_of_named(const Explanation& at) {
 /// frequencies.
 class Refit {
   public:
-    Refit(const Explanation& at, EffectRegression& regression)
+    Refit(const FittedEffects& at, EffectRegression& regression)
         : problem_(problem_of_named(at)), by_noise_(sums_of_outputs(at, regression)) {
         const MatrixXd even = at.noise.colwise().mean().replicate(at.noise.rows(), 1);
         std::vector<MatrixXd> precision;
@@ -89,7 +89,7 @@ class Refit {
     }
 
   private:
-    static std::vector<WeighedSums> sums_of_outputs(const Explanation& at,
+    static std::vector<WeighedSums> sums_of_outputs(const FittedEffects& at,
                                                     const EffectRegression& regression) {
         std::vector<WeighedSums> sums;
         for (Index output = 0; output < regression.outputs(); ++output) {
@@ -115,7 +115,7 @@ bool contradict(const EffectFit& fit, const EffectFit& even, const std::vector<I
 
 /// Returns a lasting effect on the outputs `even` that `values` do not support: its coefficients are
 /// inadmissible, or its evidence is the least and does not pay its price.
-std::optional<std::size_t> unsupported(const Explanation& at, const std::vector<bool>& even) {
+std::optional<std::size_t> unsupported(const FittedEffects& at, const std::vector<bool>& even) {
     std::optional<std::size_t> result;
     double least = 0;
     for (std::size_t effect = 0; effect < at.named_effects().size(); ++effect) {
@@ -141,7 +141,7 @@ std::optional<std::size_t> unsupported(const Explanation& at, const std::vector<
 }
 
 /// Sets the values. Returns an effect to be removed, if there is one.
-std::optional<std::size_t> choose_values(Explanation& at, Refit& refit) {
+std::optional<std::size_t> choose_values(FittedEffects& at, Refit& refit) {
     const auto outputs = static_cast<std::size_t>(refit.outputs());
     const EffectFit all_even = refit.fit(at.named_effects(), std::vector<bool>(outputs, true));
     std::vector<bool> even;
@@ -155,7 +155,7 @@ std::optional<std::size_t> choose_values(Explanation& at, Refit& refit) {
 
 } // namespace
 
-void make_robust(Explanation& at, EffectRegression& regression) {
+void make_robust(FittedEffects& at, EffectRegression& regression) {
     Refit refit(at, regression);
     while (const std::optional<std::size_t> effect = choose_values(at, refit)) {
         at.chosen = without(at.chosen, *effect);

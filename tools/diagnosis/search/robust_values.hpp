@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/diagnosis/search/explanation.hpp"
+#include "tools/diagnosis/search/fitted_effects.hpp"
 
 namespace dfdyn::tools {
 
@@ -13,6 +13,6 @@ namespace dfdyn::tools {
 /// output at which the two differ by more than noise can explain (a specification test: J. A. Hausman, 1978)
 /// has these weights in `values`. There an effect whose evidence does not pay its price is removed. The
 /// covariance is that of noise with its own spectrum. Changes the weights of `regression`.
-void make_robust(Explanation& at, EffectRegression& regression);
+void make_robust(FittedEffects& at, EffectRegression& regression);
 
 } // namespace dfdyn::tools

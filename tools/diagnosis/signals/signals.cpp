@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/signals/signals.hpp"
 
-#include "tools/diagnosis/signals/answered_band.hpp"
 #include "tools/diagnosis/signals/low_pass_kernel.hpp"
+#include "tools/diagnosis/signals/response_bandwidth.hpp"
 #include "tools/diagnosis/signals/row_weight.hpp"
 #include "tools/robot/regressor.hpp"
 

@@ -140,11 +140,11 @@ Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen:
     return spectrum.cwiseMax(1e-9 * spectrum.maxCoeff() + 1e-300);
 }
 
-Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
-                             const Eigen::VectorXd& spectrum) {
+Eigen::MatrixXd local_noise_scale(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
+                                  const Eigen::VectorXd& spectrum) {
     constexpr double usual = 8; // degrees of freedom of the prior scale 1
     const Eigen::MatrixXd power = spectrum.cwiseInverse().asDiagonal() * coefficients.cwiseAbs2();
-    Eigen::MatrixXd unrest(power.rows(), power.cols());
+    Eigen::MatrixXd noise_scale(power.rows(), power.cols());
     const Eigen::Index holding = coefficients.rows() - zero_bins(coefficients);
     Eigen::Index first = 0;
     for (const Eigen::Index last : {Eigen::Index{8}, Eigen::Index{32}, power.rows()}) {
@@ -153,12 +153,12 @@ Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::R
             const auto held = static_cast<double>(std::clamp<Eigen::Index>(holding - first, 0, count));
             const Eigen::RowVectorXd total = power.middleRows(first, count).colwise().sum() +
                                              (static_cast<double>(count) - held * filled.array()).matrix();
-            unrest.middleRows(first, count).rowwise() =
+            noise_scale.middleRows(first, count).rowwise() =
                 ((total.array() + usual) / (static_cast<double>(count) + usual)).matrix();
             first += count;
         }
     }
-    return unrest;
+    return noise_scale;
 }
 
 } // namespace dfdyn::tools

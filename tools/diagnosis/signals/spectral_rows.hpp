@@ -67,7 +67,7 @@ Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen:
 /// its spectrum, 1 on average. The scale is that of Student's t-distribution with few degrees of freedom,
 /// which limits the influence of short disturbances. Rows that are not `filled` and bins that are zero count
 /// with the average scale.
-Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
-                             const Eigen::VectorXd& spectrum);
+Eigen::MatrixXd local_noise_scale(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
+                                  const Eigen::VectorXd& spectrum);
 
 } // namespace dfdyn::tools

@@ -125,7 +125,7 @@ void suspect_poor_extension(Diagnosis& diagnosis) {
 
 } // namespace
 
-void measure_from(DiagnosisWork& work, Eigen::Index first, const Explanation& explanation) {
+void measure_from(DiagnosisWork& work, Eigen::Index first, const FittedEffects& fitted_effects) {
     const DiagnosisSignals& signals = *work.signals;
     const auto in_output_units = [&](const Eigen::MatrixXd& torques) -> Eigen::MatrixXd {
         return torques * work.torque_gains.asDiagonal();
@@ -149,21 +149,21 @@ void measure_from(DiagnosisWork& work, Eigen::Index first, const Explanation& ex
     });
     const Eigen::Index fitted = first > 0 ? first : signals.rows();
     diagnosis.nominal = measure(signals.nominal);
-    diagnosis.causes = measure(signals.nominal + explanation.model(signals));
+    diagnosis.causes = measure(signals.nominal + fitted_effects.model(signals));
     diagnosis.extended = diagnosis.causes;
     diagnosis.least_squares =
         measure(textbook_fit(signals, work.measured, signals.nominal, fitted).prediction);
     diagnosis.by_least_squares.assign(static_cast<std::size_t>(signals.outputs()), false);
-    if (!explanation.candidates.empty()) {
+    if (!fitted_effects.candidates.empty()) {
         take_better(diagnosis);
     }
 }
 
-void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options) {
+void measure_on_held_out(DiagnosisWork& work, FitOptions options) {
     options.fitted_share = fitted_share;
     const DiagnosisSignals& signals = *work.signals;
     const Eigen::Index first = std::llround(fitted_share * static_cast<double>(signals.rows()));
-    measure_from(work, first, explain(signals, work.measured, options));
+    measure_from(work, first, find_effects(signals, work.measured, options));
     Diagnosis& diagnosis = work.diagnosis;
     suspect_poor_extension(diagnosis);
     diagnosis.heldout_from_s = signals.measured.time_s[first];

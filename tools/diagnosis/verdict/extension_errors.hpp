@@ -9,10 +9,10 @@ namespace dfdyn::tools {
 /// the effects of an explanation, and of plain least squares, fitted before that row (0: on all rows). Sets
 /// `nominal`, `extended`, `least_squares`, `by_least_squares` and `standing_share` of the diagnosis. Where
 /// the effects err 3 % more than plain least squares, `extended` has its errors.
-void measure_from(DiagnosisWork& work, Eigen::Index first, const Explanation& explanation);
+void measure_from(DiagnosisWork& work, Eigen::Index first, const FittedEffects& fitted_effects);
 
 /// Measures the errors on the last third, for a model that is chosen and fitted on the first two thirds. Adds
 /// a suspicion if the effects increase the errors. Cost: that of a diagnosis.
-void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options);
+void measure_on_held_out(DiagnosisWork& work, FitOptions options);
 
 } // namespace dfdyn::tools

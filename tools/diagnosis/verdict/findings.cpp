@@ -25,16 +25,16 @@ constexpr double same_body_share = 0.02;
 constexpr std::size_t most_alternatives = 3; ///< of a finding
 
 /// Determines the alternatives to a chosen effect, and their odds.
-void weigh_alternatives(Finding& finding, const Explanation& explanation, const Neighbours& near,
+void weigh_alternatives(Finding& finding, const FittedEffects& fitted_effects, const Neighbours& near,
                         std::size_t index) {
-    const double own = explanation.fit.score;
-    const Candidate& own_candidate = explanation.candidates[explanation.chosen[index].candidate];
+    const double own = fitted_effects.fit.score;
+    const Candidate& own_candidate = fitted_effects.candidates[fitted_effects.chosen[index].candidate];
     finding.margin_to_nothing = own - near.score_without(index);
     finding.margin_to_others = std::numeric_limits<double>::infinity();
     for (const Replacement& other : near.exchanges(index)) {
-        const Candidate& candidate = explanation.candidates[other.with.candidate];
+        const Candidate& candidate = fitted_effects.candidates[other.with.candidate];
         const double margin = own - other.score;
-        if (!candidate.named() || other.with.candidate == explanation.chosen[index].candidate ||
+        if (!candidate.named() || other.with.candidate == fitted_effects.chosen[index].candidate ||
             (candidate.effect == finding.effect && candidate.where == finding.where)) {
             continue;
         }
@@ -56,25 +56,25 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, const 
 }
 
 /// Returns a chosen named effect as a finding, without its gain.
-Finding of_cause(const Explanation& explanation, const Neighbours& near, std::size_t index,
+Finding of_cause(const FittedEffects& fitted_effects, const Neighbours& near, std::size_t index,
                  double duration_s) {
-    const Candidate& candidate = explanation.candidates[explanation.chosen[index].candidate];
+    const Candidate& candidate = fitted_effects.candidates[fitted_effects.chosen[index].candidate];
     Finding finding;
     finding.effect = candidate.effect;
     finding.where = candidate.where;
     finding.detail = candidate.detail;
-    finding.parameters = found_parameters(explanation, index);
-    weigh_alternatives(finding, explanation, near, index);
+    finding.parameters = found_parameters(fitted_effects, index);
+    weigh_alternatives(finding, fitted_effects, near, index);
     // confidence is low if an effect is significant only together with an unnamed one that cancels most of it
-    finding.margin_to_nothing = std::min(finding.margin_to_nothing, explanation.evidence(index));
+    finding.margin_to_nothing = std::min(finding.margin_to_nothing, fitted_effects.evidence(index));
     finding.confidence = calibrated_confidence(finding, duration_s);
     finding.confirm = confirmation(finding);
     return finding;
 }
 
-Finding of_push(const StandingContact& push) {
+Finding of_push(const StationaryContact& push) {
     // upper limit for real arms: on simulated arms all such findings are correct
-    constexpr double surest = 0.95;
+    constexpr double max_confidence = 0.95;
     Finding finding;
     finding.effect = effects::external_contact().name;
     finding.where = numbered("joint", push.joint);
@@ -90,14 +90,14 @@ Finding of_push(const StandingContact& push) {
             one.name == "peak" ? more + deviations_of_95 * push.deviation() : push.pulse.rise_s / 2;
         finding.parameters.push_back({one.name, one.unit, one.value, one.value - reach, one.value + reach});
     }
-    finding.confidence = surest * push.probability();
+    finding.confidence = max_confidence * push.probability();
     finding.margin_to_nothing = std::log(finding.confidence / (1 - finding.confidence));
     finding.margin_to_others = std::numeric_limits<double>::infinity();
     finding.confirm = confirmation(finding);
     return finding;
 }
 
-std::string held_words(const StandingContact& push) {
+std::string held_words(const StationaryContact& push) {
     const auto interval = [](double value, double deviation) {
         return rounded_text(value) + " ± " + rounded_text(deviations_of_95 * deviation) + " N·m";
     };
@@ -107,17 +107,17 @@ std::string held_words(const StandingContact& push) {
 }
 
 /// Returns the chosen named effects that reduce the error.
-std::vector<Finding> of_causes(const DiagnosisSignals& signals, const Explanation& explanation,
+std::vector<Finding> of_causes(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
                                const Gains& gains) {
     const double duration_s = static_cast<double>(signals.rows()) / signals.measured.rate_hz;
-    const Neighbours near(explanation.problem, explanation.chosen);
+    const Neighbours near(fitted_effects.problem, fitted_effects.chosen);
     // named effects are the first of those chosen
-    const std::vector<ChosenShape> named = explanation.named_effects();
+    const std::vector<ChosenShape> named = fitted_effects.named_effects();
     std::vector<Finding> findings;
     for (std::size_t i = 0; i < named.size(); ++i) {
-        const std::string key = explanation.candidates[named[i].candidate].key();
-        Finding finding = of_cause(explanation, near, i, duration_s);
-        if (gains.tell(finding, explanation.effects(
+        const std::string key = fitted_effects.candidates[named[i].candidate].key();
+        Finding finding = of_cause(fitted_effects, near, i, duration_s);
+        if (gains.tell(finding, fitted_effects.effects(
                                     signals, [&](const Candidate& one) { return one.key() == key; }))) {
             findings.push_back(std::move(finding));
         }
@@ -125,10 +125,10 @@ std::vector<Finding> of_causes(const DiagnosisSignals& signals, const Explanatio
     return findings;
 }
 
-std::vector<Finding> of_pushes(const DiagnosisSignals& signals, const std::vector<StandingContact>& pushes,
+std::vector<Finding> of_pushes(const DiagnosisSignals& signals, const std::vector<StationaryContact>& pushes,
                                const Gains& gains) {
     std::vector<Finding> findings;
-    for (const StandingContact& push : pushes) {
+    for (const StationaryContact& push : pushes) {
         Finding finding = of_push(push);
         Eigen::MatrixXd contribution = Eigen::MatrixXd::Zero(signals.rows(), signals.outputs());
         contribution.col(static_cast<Eigen::Index>(push.joint)) = push.share;
@@ -207,11 +207,11 @@ void doubt_useless_findings(Diagnosis& diagnosis) {
     }
 }
 
-std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
-                                 const std::vector<StandingContact>& pushes, const Eigen::MatrixXd& rest,
+std::vector<Finding> findings_of(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
+                                 const std::vector<StationaryContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names) {
     const Gains gains(signals, rest, output_names);
-    std::vector<Finding> findings = without_repeated_contacts(of_causes(signals, explanation, gains));
+    std::vector<Finding> findings = without_repeated_contacts(of_causes(signals, fitted_effects, gains));
     for (Finding& push : of_pushes(signals, pushes, gains)) {
         add_push(findings, std::move(push));
     }

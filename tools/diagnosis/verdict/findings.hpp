@@ -8,8 +8,8 @@ namespace dfdyn::tools {
 /// Returns the chosen effects of an explanation and the contacts during standstill as findings, in descending
 /// order of gain, with parameters, intervals, confidence and alternatives. `rest` (T x m): residual after all
 /// of them.
-std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
-                                 const std::vector<StandingContact>& pushes, const Eigen::MatrixXd& rest,
+std::vector<Finding> findings_of(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
+                                 const std::vector<StationaryContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names);
 
 /// Confidence of a finding that something contradicts, at most.

@@ -36,32 +36,32 @@ struct ShapeParameters {
 
 /// Parameters of a chosen effect, their variance for the chosen shape, and the additional variance from other
 /// shapes with almost the same evidence.
-ShapeParameters parameters_over_shapes(const Explanation& explanation, std::size_t index) {
-    const std::size_t number = explanation.chosen[index].candidate;
-    const Candidate& candidate = explanation.candidates[number];
-    std::vector<ChosenShape> named = explanation.named_effects();
+ShapeParameters parameters_over_shapes(const FittedEffects& fitted_effects, std::size_t index) {
+    const std::size_t number = fitted_effects.chosen[index].candidate;
+    const Candidate& candidate = fitted_effects.candidates[number];
+    std::vector<ChosenShape> named = fitted_effects.named_effects();
     const EffectShape& own_shape = candidate.shapes[named[index].shape];
-    const ShapeParameters own(candidate, own_shape, explanation.coefficients(index),
-                              explanation.covariance(index));
-    const Eigen::Index first = explanation.first_column(index);
-    const Eigen::Index count = explanation.coefficients(index).size();
+    const ShapeParameters own(candidate, own_shape, fitted_effects.coefficients(index),
+                              fitted_effects.covariance(index));
+    const Eigen::Index first = fitted_effects.first_column(index);
+    const Eigen::Index count = fitted_effects.coefficients(index).size();
     // the same by the evidence's weights, to which the other shapes are compared
     const ShapeParameters by_evidence(candidate, own_shape,
-                                      explanation.named.coefficients.segment(first, count),
-                                      explanation.named.covariance.block(first, first, count, count));
+                                      fitted_effects.named.coefficients.segment(first, count),
+                                      fitted_effects.named.covariance.block(first, first, count, count));
     ShapeParameters result = own;
     double total = 1;
     for (std::size_t shape = 0; shape < candidate.shapes.size(); ++shape) {
         named[index].shape = shape;
         const EffectShape& other_shape = candidate.shapes[shape];
-        if (shape == explanation.chosen[index].shape ||
+        if (shape == fitted_effects.chosen[index].shape ||
             other_shape.columns.size() != own_shape.columns.size()) {
             continue;
         }
-        const EffectFit fit = fit_effects(explanation.problem, named);
+        const EffectFit fit = fit_effects(fitted_effects.problem, named);
         const ShapeParameters other(candidate, other_shape, fit.coefficients.segment(first, count),
                                     fit.covariance.block(first, first, count, count));
-        const double odds = std::exp(std::min(0.0, fit.score - explanation.named.score));
+        const double odds = std::exp(std::min(0.0, fit.score - fitted_effects.named.score));
         if (fit.allowed && own.same_names(other)) {
             total += odds;
             for (Eigen::Index k = 0; k < own.variance.size(); ++k) {
@@ -77,14 +77,14 @@ ShapeParameters parameters_over_shapes(const Explanation& explanation, std::size
 
 } // namespace
 
-std::vector<FoundParameter> found_parameters(const Explanation& explanation, std::size_t index) {
-    const ShapeParameters all = parameters_over_shapes(explanation, index);
+std::vector<FoundParameter> found_parameters(const FittedEffects& fitted_effects, std::size_t index) {
+    const ShapeParameters all = parameters_over_shapes(fitted_effects, index);
     std::vector<FoundParameter> result;
     for (std::size_t k = 0; k < all.values.size(); ++k) {
-        const auto& [name, unit, value, of_nothing, unsettled] = all.values[k];
+        const auto& [name, unit, value, null_value, systematic_relative_std] = all.values[k];
         const double of_data =
-            reach_of_95(std::sqrt(all.variance[static_cast<Eigen::Index>(k)]), value - of_nothing);
-        const double reach = std::hypot(of_data, deviations_of_95 * unsettled * value);
+            reach_of_95(std::sqrt(all.variance[static_cast<Eigen::Index>(k)]), value - null_value);
+        const double reach = std::hypot(of_data, deviations_of_95 * systematic_relative_std * value);
         result.push_back({name, unit, value, value - reach, value + reach});
     }
     return result;

@@ -9,7 +9,7 @@ inline constexpr double deviations_of_95 = 1.96; ///< on either side
 
 /// Returns the parameters of a chosen named candidate. Their intervals include other shapes with almost the
 /// same evidence.
-std::vector<FoundParameter> found_parameters(const Explanation& explanation, std::size_t chosen_index);
+std::vector<FoundParameter> found_parameters(const FittedEffects& fitted_effects, std::size_t chosen_index);
 
 /// Returns half the width of a parameter's 95 % interval, from its standard deviation in the regression (for
 /// noise with the assumed weights) and the difference `effect` from its null value.

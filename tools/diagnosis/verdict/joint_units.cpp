@@ -54,9 +54,9 @@ void use_units_of_joints(Diagnosis& diagnosis, const Robot& robot) {
             parameter.unit = unit_at_joint(parameter.unit, prismatic && !angle);
         }
     }
-    for (GrantedQuantity& granted : diagnosis.granted) {
-        granted.parameter.unit =
-            unit_at_joint(granted.parameter.unit, at_prismatic_joint(granted.where, robot));
+    for (NuisanceEstimate& nuisance : diagnosis.nuisance_estimates) {
+        nuisance.parameter.unit =
+            unit_at_joint(nuisance.parameter.unit, at_prismatic_joint(nuisance.where, robot));
     }
 }
 

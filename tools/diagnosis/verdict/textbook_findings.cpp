@@ -95,7 +95,7 @@ void name_by_least_squares(DiagnosisWork& work) {
     const DiagnosisSignals& signals = *work.signals;
     Diagnosis& diagnosis = work.diagnosis;
     diagnosis.textbook = MatrixXd::Zero(5, signals.outputs());
-    work.extended = signals.nominal + work.explanation.model(signals);
+    work.extended = signals.nominal + work.fitted_effects.model(signals);
     const MatrixXd all_rows =
         textbook_fit(signals, work.measured, signals.nominal, signals.rows()).prediction;
     MatrixXd left = work.measured; // least squares and pushes will be taken off
@@ -113,7 +113,7 @@ void name_by_least_squares(DiagnosisWork& work) {
             }
         }
     }
-    for (const StandingContact& push : work.pushes) {
+    for (const StationaryContact& push : work.pushes) {
         left.col(static_cast<Index>(push.joint)) -= push.share;
     }
     const Gains gains(signals, left, diagnosis.output_names);

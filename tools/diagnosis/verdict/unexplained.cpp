@@ -132,15 +132,15 @@ double share_of_deviation(const Eigen::VectorXd& series, const Eigen::VectorXd& 
 } // namespace
 
 std::vector<Unexplained> unnamed_dependences(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
-                                             const Explanation& explanation) {
+                                             const FittedEffects& fitted_effects) {
     std::vector<Unexplained> result;
-    for (const ChosenShape& one : explanation.chosen) {
-        const Candidate& candidate = explanation.candidates[one.candidate];
+    for (const ChosenShape& one : fitted_effects.chosen) {
+        const Candidate& candidate = fitted_effects.candidates[one.candidate];
         if (candidate.named()) {
             continue;
         }
         const Eigen::Index output = candidate.columns.front().parts.front().output;
-        const Eigen::MatrixXd contribution = explanation.effects(
+        const Eigen::MatrixXd contribution = fitted_effects.effects(
             signals, [&](const Candidate& other) { return other.key() == candidate.key(); });
         add_rest(result, {{output, share_of_deviation(contribution.col(output), measured.col(output)),
                            candidate.inputs, no_name}});

@@ -7,7 +7,7 @@ namespace dfdyn::tools {
 
 /// Returns the dependences that the explanation contains without a name.
 std::vector<Unexplained> unnamed_dependences(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
-                                             const Explanation& explanation);
+                                             const FittedEffects& fitted_effects);
 
 /// Merges the entries of the same output.
 void add_rest(std::vector<Unexplained>& unexplained, const std::vector<Unexplained>& rest);

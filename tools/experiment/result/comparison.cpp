@@ -18,17 +18,17 @@ constexpr double significance = 0.05;
 
 /// Results of both cases for the same draw.
 struct Pair {
-    const UnitResult* better;
-    const UnitResult* worse;
+    const JobResult* better;
+    const JobResult* worse;
 };
 
-std::vector<Pair> pairs_of(const Comparison& comparison, std::span<const UnitResult> units) {
+std::vector<Pair> pairs_of(const Comparison& comparison, std::span<const JobResult> jobs) {
     std::vector<Pair> pairs;
-    for (const UnitResult& better : units) {
-        const auto worse = std::ranges::find_if(units, [&](const UnitResult& unit) {
-            return unit.case_name == comparison.worse && unit.seed == better.seed;
+    for (const JobResult& better : jobs) {
+        const auto worse = std::ranges::find_if(jobs, [&](const JobResult& job) {
+            return job.case_name == comparison.worse && job.seed == better.seed;
         });
-        if (better.case_name == comparison.better && worse != units.end()) {
+        if (better.case_name == comparison.better && worse != jobs.end()) {
             pairs.push_back({&better, &*worse});
         }
     }
@@ -78,8 +78,8 @@ class PairErrors {
     std::size_t subset_count(const Pair& pair) const { return pair.better->error[group_].size(); }
 
   private:
-    double error(const UnitResult& unit, std::size_t subset) const {
-        return phase_error(unit, group_, subset, phase_, steady_after_s_);
+    double error(const JobResult& job, std::size_t subset) const {
+        return phase_error(job, group_, subset, phase_, steady_after_s_);
     }
 
     Phase phase_;
@@ -109,11 +109,11 @@ std::vector<double> differences_in(const std::vector<Pair>& pairs, const PairErr
 
 } // namespace
 
-ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::span<const UnitResult> units) {
+ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::span<const JobResult> jobs) {
     ComparisonOutcome outcome{comparison};
     const double threshold = 1 - comparison.gain;
     const PairErrors errors(comparison, plan);
-    const std::vector<Pair> pairs = pairs_of(comparison, units);
+    const std::vector<Pair> pairs = pairs_of(comparison, jobs);
     std::vector<double> ratios;
     std::vector<double> differences;
     for (const Pair& pair : pairs) {
@@ -154,18 +154,18 @@ FindingVerdict verdict_of(std::span<const ComparisonOutcome> comparisons) {
 }
 
 std::vector<ComparisonOutcome> compare_all(std::span<const Comparison> comparisons, const Plan& plan,
-                                           std::span<const UnitResult> units) {
+                                           std::span<const JobResult> jobs) {
     std::vector<ComparisonOutcome> outcomes;
     for (const Comparison& comparison : comparisons) {
-        outcomes.push_back(compare(comparison, plan, units));
+        outcomes.push_back(compare(comparison, plan, jobs));
     }
     return outcomes;
 }
 
-std::vector<FindingOutcome> judge_findings(const Plan& plan, std::span<const UnitResult> units) {
+std::vector<FindingOutcome> judge_findings(const Plan& plan, std::span<const JobResult> jobs) {
     std::vector<FindingOutcome> outcomes;
     for (const ExpectedFinding& finding : plan.findings) {
-        std::vector<ComparisonOutcome> comparisons = compare_all(finding.comparisons, plan, units);
+        std::vector<ComparisonOutcome> comparisons = compare_all(finding.comparisons, plan, jobs);
         const FindingVerdict verdict = verdict_of(comparisons);
         outcomes.push_back({&finding, std::move(comparisons), verdict});
     }

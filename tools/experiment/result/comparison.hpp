@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/experiment/plan/plan.hpp"
-#include "tools/experiment/run/unit_result.hpp"
+#include "tools/experiment/run/job_result.hpp"
 
 #include <span>
 #include <string>
@@ -32,7 +32,7 @@ struct ComparisonOutcome {
 /// - The statement holds if the test confirms it with p < 0.05 and more than half of the subsets agree.
 /// - It is contradicted if the test confirms the opposite with p < 0.05.
 /// - Otherwise it is undecided. This is always so for fewer than five draws.
-ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::span<const UnitResult> units);
+ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::span<const JobResult> jobs);
 
 enum class FindingVerdict { reproduced, partly, not_reproduced, undecided };
 
@@ -47,9 +47,9 @@ struct FindingOutcome {
 FindingVerdict verdict_of(std::span<const ComparisonOutcome> comparisons);
 
 std::vector<ComparisonOutcome> compare_all(std::span<const Comparison> comparisons, const Plan& plan,
-                                           std::span<const UnitResult> units);
+                                           std::span<const JobResult> jobs);
 
-std::vector<FindingOutcome> judge_findings(const Plan& plan, std::span<const UnitResult> units);
+std::vector<FindingOutcome> judge_findings(const Plan& plan, std::span<const JobResult> jobs);
 
 std::string to_string(Verdict verdict);
 std::string to_string(FindingVerdict verdict);

@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 namespace {
 
 /// Returns the mean over the subsets with a value at the tick; NaN if there is none.
-double subset_mean(const UnitResult& draw, std::size_t group, std::size_t tick) {
+double subset_mean(const JobResult& draw, std::size_t group, std::size_t tick) {
     std::vector<double> values;
     for (const std::vector<double>& subset : draw.error[group]) {
         if (tick < subset.size() && !std::isnan(subset[tick])) {
@@ -23,7 +23,7 @@ double subset_mean(const UnitResult& draw, std::size_t group, std::size_t tick) 
     return mean_of(values);
 }
 
-std::size_t longest_subset(const UnitResult& draw, std::size_t group) {
+std::size_t longest_subset(const JobResult& draw, std::size_t group) {
     std::size_t longest = 0;
     for (const std::vector<double>& subset : draw.error[group]) {
         longest = std::max(longest, subset.size());
@@ -33,12 +33,12 @@ std::size_t longest_subset(const UnitResult& draw, std::size_t group) {
 
 } // namespace
 
-ErrorCurve error_curve(std::span<const UnitResult* const> draws, std::size_t group) {
+ErrorCurve error_curve(std::span<const JobResult* const> draws, std::size_t group) {
     ErrorCurve curve;
     const std::size_t ticks = draws.empty() ? 0 : longest_subset(*draws.front(), group);
     for (std::size_t tick = 0; tick < ticks; ++tick) {
         std::vector<double> means;
-        for (const UnitResult* draw : draws) {
+        for (const JobResult* draw : draws) {
             means.push_back(subset_mean(*draw, group, tick));
         }
         std::ranges::sort(means);

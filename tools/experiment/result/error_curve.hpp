@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/experiment/run/unit_result.hpp"
+#include "tools/experiment/run/job_result.hpp"
 
 #include <span>
 #include <vector>
@@ -17,7 +17,7 @@ struct ErrorCurve {
 };
 
 /// Returns the paper's curve, tick by tick: the mean over the subsets with a value, then over the draws.
-ErrorCurve error_curve(std::span<const UnitResult* const> draws, std::size_t group);
+ErrorCurve error_curve(std::span<const JobResult* const> draws, std::size_t group);
 
 /// Returns the curve with at most `per_decade` points per decade of time, each the mean over its time
 /// interval, for a logarithmic axis. Points at time 0 and intervals without values are left out.

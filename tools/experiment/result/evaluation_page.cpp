@@ -35,8 +35,8 @@ std::string counted(std::size_t count, const std::string& thing) {
 class EvaluationPage {
   public:
     EvaluationPage(const Plan& plan, const PlanData& data, const EvaluationResults& results)
-        : plan_(plan), data_(data), results_(results), findings_(judge_findings(plan, results.units)),
-          comparisons_(compare_all(plan.comparisons, plan, results.units)) {}
+        : plan_(plan), data_(data), results_(results), findings_(judge_findings(plan, results.jobs)),
+          comparisons_(compare_all(plan.comparisons, plan, results.jobs)) {}
 
     FigurePage page() const {
         FigurePage page{plan_.title, protocol_sentence(), finding_sections(), {{"Build", build_flags()}}};
@@ -66,12 +66,12 @@ class EvaluationPage {
 
     ChartCurve curve_of(const std::string& name, std::size_t group) const {
         const ErrorCurve curve =
-            thinned(error_curve(draws_of(results_.units, name), group), points_per_decade);
+            thinned(error_curve(draws_of(results_.jobs, name), group), points_per_decade);
         return {name, curve.time_s, curve.mean, curve.low, curve.high};
     }
 
     ChartBox box_of_case(const std::string& name, std::size_t group) const {
-        const Box box = phase_box(draws_of(results_.units, name), group, Phase::steady, plan_.steady_after_s);
+        const Box box = phase_box(draws_of(results_.jobs, name), group, Phase::steady, plan_.steady_after_s);
         return {name, box.low, box.lower_quartile, box.median, box.upper_quartile, box.high, box.mean};
     }
 
@@ -151,18 +151,18 @@ class EvaluationPage {
     std::vector<ReportTable> tables() const {
         std::vector<ReportTable> tables;
         for (std::size_t group = 0; group < plan_.groups.size(); ++group) {
-            tables.push_back(error_table(plan_, results_.units, group));
+            tables.push_back(error_table(plan_, results_.jobs, group));
         }
-        tables.push_back(step_error_table(plan_, results_.units, results_.opponents, outputs()));
-        tables.push_back(cost_table(plan_, results_.units));
+        tables.push_back(step_error_table(plan_, results_.jobs, results_.opponents, outputs()));
+        tables.push_back(cost_table(plan_, results_.jobs));
         return tables;
     }
 
     PageSection failures() const {
         PageSection section{"Not done", {}, {}, {}};
-        for (const FailedUnit& unit : results_.failed) {
-            section.paragraphs.push_back(unit.case_name + ", draw " + std::to_string(unit.seed) + ": " +
-                                         unit.reason);
+        for (const FailedJob& job : results_.failed) {
+            section.paragraphs.push_back(job.case_name + ", draw " + std::to_string(job.seed) + ": " +
+                                         job.reason);
         }
         return section;
     }
@@ -225,7 +225,7 @@ void write_evaluation(const std::filesystem::path& folder, const Plan& plan, con
     const EvaluationPage evaluation(plan, data, results);
     const FigurePage page = evaluation.page();
     std::ostringstream csv;
-    write_results_csv(csv, plan, results.units, results.opponents, data.start.output.names);
+    write_results_csv(csv, plan, results.jobs, results.opponents, data.start.output.names);
     files.add(folder / "results.csv", csv.str());
     files.add(folder / "tables.md", evaluation.tables_markdown());
     files.add(folder / "report.html", render_figure_page(page));

@@ -16,19 +16,19 @@ namespace dfdyn::tools {
 namespace {
 
 template <class Value>
-double median_over(const std::vector<const UnitResult*>& draws, const Value& value) {
+double median_over(const std::vector<const JobResult*>& draws, const Value& value) {
     std::vector<double> values;
     std::ranges::transform(draws, std::back_inserter(values),
-                           [&](const UnitResult* draw) { return static_cast<double>(value(*draw)); });
+                           [&](const JobResult* draw) { return static_cast<double>(value(*draw)); });
     return median(std::move(values));
 }
 
 /// Returns the interquartile range of the draws' values as text.
 template <class Value>
-std::string spread_over(const std::vector<const UnitResult*>& draws, const Value& value) {
+std::string spread_over(const std::vector<const JobResult*>& draws, const Value& value) {
     std::vector<double> values;
     std::ranges::transform(draws, std::back_inserter(values),
-                           [&](const UnitResult* draw) { return value(*draw); });
+                           [&](const JobResult* draw) { return value(*draw); });
     const Box box = box_of(std::move(values));
     if (std::isnan(box.lower_quartile)) {
         return "–"; // no draw has a value
@@ -41,11 +41,11 @@ std::string spread_over(const std::vector<const UnitResult*>& draws, const Value
 
 /// Returns the rows of a table, one for each case that has a draw.
 template <class Cells>
-std::vector<std::vector<ReportCell>> rows_of_cases(const Plan& plan, std::span<const UnitResult> units,
+std::vector<std::vector<ReportCell>> rows_of_cases(const Plan& plan, std::span<const JobResult> jobs,
                                                    const Cells& cells) {
     std::vector<std::vector<ReportCell>> rows;
     for (const Case& one : plan.cases) {
-        const std::vector<const UnitResult*> draws = draws_of(units, one.name);
+        const std::vector<const JobResult*> draws = draws_of(jobs, one.name);
         if (!draws.empty()) {
             rows.push_back({one.name});
             std::ranges::copy(cells(draws), std::back_inserter(rows.back()));
@@ -67,9 +67,9 @@ std::string share_text(std::size_t part, std::size_t whole) {
     return std::to_string(part) + " of " + std::to_string(whole);
 }
 
-void write_phase(std::ostream& out, const UnitResult& unit, std::size_t group, Phase phase,
+void write_phase(std::ostream& out, const JobResult& job, std::size_t group, Phase phase,
                  double steady_after_s) {
-    const UnitResult* const draw = &unit;
+    const JobResult* const draw = &job;
     const Box box = phase_box({&draw, 1}, group, phase, steady_after_s);
     for (const double value :
          {box.mean, box.median, box.lower_quartile, box.upper_quartile, box.low, box.high}) {
@@ -79,11 +79,11 @@ void write_phase(std::ostream& out, const UnitResult& unit, std::size_t group, P
 
 } // namespace
 
-std::vector<const UnitResult*> draws_of(std::span<const UnitResult> units, const std::string& case_name) {
-    std::vector<const UnitResult*> draws;
-    for (const UnitResult& unit : units) {
-        if (unit.case_name == case_name) {
-            draws.push_back(&unit);
+std::vector<const JobResult*> draws_of(std::span<const JobResult> jobs, const std::string& case_name) {
+    std::vector<const JobResult*> draws;
+    for (const JobResult& job : jobs) {
+        if (job.case_name == case_name) {
+            draws.push_back(&job);
         }
     }
     return draws;
@@ -93,10 +93,10 @@ namespace {
 
 /// Returns a list of the texts of all cases with results; empty texts are left out.
 template <class TextOf>
-std::string list_of_cases(const Plan& plan, std::span<const UnitResult> units, const TextOf& text_of) {
+std::string list_of_cases(const Plan& plan, std::span<const JobResult> jobs, const TextOf& text_of) {
     std::vector<std::string> cases;
     for (const Case& one : plan.cases) {
-        const std::vector<const UnitResult*> draws = draws_of(units, one.name);
+        const std::vector<const JobResult*> draws = draws_of(jobs, one.name);
         const std::string text = draws.empty() ? std::string() : text_of(one, draws);
         if (!text.empty()) {
             cases.push_back(text);
@@ -105,13 +105,13 @@ std::string list_of_cases(const Plan& plan, std::span<const UnitResult> units, c
     return listed(cases);
 }
 
-std::string error_note(const Plan& plan, std::span<const UnitResult> units, std::size_t group) {
-    using Draws = std::vector<const UnitResult*>;
-    const std::string lost = list_of_cases(plan, units, [&](const Case& one, const Draws& draws) {
+std::string error_note(const Plan& plan, std::span<const JobResult> jobs, std::size_t group) {
+    using Draws = std::vector<const JobResult*>;
+    const std::string lost = list_of_cases(plan, jobs, [&](const Case& one, const Draws& draws) {
         const double share = lost_share(draws, group);
         return share > 0 ? one.name + " " + formatted("%.3g", 100 * share) + " %" : std::string();
     });
-    const std::string same = list_of_cases(plan, units, [](const Case& one, const Draws&) {
+    const std::string same = list_of_cases(plan, jobs, [](const Case& one, const Draws&) {
         return !structure(one.model).features ? one.name : std::string();
     });
     std::string note =
@@ -124,12 +124,12 @@ std::string error_note(const Plan& plan, std::span<const UnitResult> units, std:
 
 } // namespace
 
-ReportTable error_table(const Plan& plan, std::span<const UnitResult> units, std::size_t group) {
-    const auto box_of_draws = [&](std::span<const UnitResult* const> draws, Phase phase) {
+ReportTable error_table(const Plan& plan, std::span<const JobResult> jobs, std::size_t group) {
+    const auto box_of_draws = [&](std::span<const JobResult* const> draws, Phase phase) {
         return phase_box(draws, group, phase, plan.steady_after_s);
     };
-    const auto box_of_draw = [&](const UnitResult& draw, Phase phase) {
-        const UnitResult* const one = &draw;
+    const auto box_of_draw = [&](const JobResult& draw, Phase phase) {
+        const JobResult* const one = &draw;
         return box_of_draws({&one, 1}, phase);
     };
     ReportTable table;
@@ -145,33 +145,33 @@ ReportTable error_table(const Plan& plan, std::span<const UnitResult> units, std
                      "75 %",
                      "5 %",
                      "95 %"};
-    table.rows = rows_of_cases(plan, units, [&](const std::vector<const UnitResult*>& draws) {
+    table.rows = rows_of_cases(plan, jobs, [&](const std::vector<const JobResult*>& draws) {
         const Box transient = box_of_draws(draws, Phase::transient);
         const Box steady = box_of_draws(draws, Phase::steady);
         const std::string means = spread_over(
-            draws, [&](const UnitResult& draw) { return box_of_draw(draw, Phase::transient).mean; });
+            draws, [&](const JobResult& draw) { return box_of_draw(draw, Phase::transient).mean; });
         const std::string medians = spread_over(
-            draws, [&](const UnitResult& draw) { return box_of_draw(draw, Phase::steady).median; });
+            draws, [&](const JobResult& draw) { return box_of_draw(draw, Phase::steady).median; });
         return std::vector<ReportCell>{
             transient.mean, means,      transient.median,      steady.mean,
             steady.median,  medians,    steady.lower_quartile, steady.upper_quartile,
             steady.low,     steady.high};
     });
-    table.note = error_note(plan, units, group);
+    table.note = error_note(plan, jobs, group);
     return table;
 }
 
-ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units,
+ReportTable step_error_table(const Plan& plan, std::span<const JobResult> jobs,
                              const PlanOpponents& opponents, const std::vector<std::string>& outputs) {
     ReportTable table;
     table.caption = "nRMSE, one step";
     table.columns = {"case"};
     table.columns.insert(table.columns.end(), outputs.begin(), outputs.end());
-    table.rows = rows_of_cases(plan, units, [&](const std::vector<const UnitResult*>& draws) {
+    table.rows = rows_of_cases(plan, jobs, [&](const std::vector<const JobResult*>& draws) {
         std::vector<ReportCell> errors;
         for (std::size_t output = 0; output < outputs.size(); ++output) {
             errors.emplace_back(
-                median_over(draws, [&](const UnitResult& draw) { return draw.normalised_error[output]; }));
+                median_over(draws, [&](const JobResult& draw) { return draw.normalised_error[output]; }));
         }
         return errors;
     });
@@ -192,15 +192,15 @@ ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units
     return table;
 }
 
-ReportTable cost_table(const Plan& plan, std::span<const UnitResult> units) {
+ReportTable cost_table(const Plan& plan, std::span<const JobResult> jobs) {
     ReportTable table;
     table.caption = "Cost";
     table.columns = {"case", "columns", "multiply-adds per tick", "state, bytes", "µs per tick, median"};
-    table.rows = rows_of_cases(plan, units, [](const std::vector<const UnitResult*>& draws) {
+    table.rows = rows_of_cases(plan, jobs, [](const std::vector<const JobResult*>& draws) {
         return std::vector<ReportCell>{
             static_cast<double>(draws.front()->columns), static_cast<double>(draws.front()->operations),
             static_cast<double>(draws.front()->state_bytes),
-            median_over(draws, [](const UnitResult& draw) { return draw.median_us; })};
+            median_over(draws, [](const JobResult& draw) { return draw.median_us; })};
     });
     table.note = "Times are of the machine that ran this, with other work beside it.";
     return table;
@@ -267,7 +267,7 @@ void write_opponent(std::ostream& out, const OpponentErrors& opponent) {
 
 } // namespace
 
-void write_results_csv(std::ostream& out, const Plan& plan, std::span<const UnitResult> units,
+void write_results_csv(std::ostream& out, const Plan& plan, std::span<const JobResult> jobs,
                        const PlanOpponents& opponents, const std::vector<std::string>& outputs) {
     out << "case,seed,group";
     for (const std::string phase : {"transient", "steady"}) {
@@ -279,17 +279,17 @@ void write_results_csv(std::ostream& out, const Plan& plan, std::span<const Unit
         out << ",nrmse_" << output;
     }
     out << ",lost,median_us,operations,state_bytes,columns\n";
-    for (const UnitResult& unit : units) {
+    for (const JobResult& job : jobs) {
         for (std::size_t group = 0; group < plan.groups.size(); ++group) {
-            out << unit.case_name << ',' << unit.seed << ',' << plan.groups[group].name;
-            write_phase(out, unit, group, Phase::transient, plan.steady_after_s);
-            write_phase(out, unit, group, Phase::steady, plan.steady_after_s);
-            for (const double error : unit.normalised_error) {
+            out << job.case_name << ',' << job.seed << ',' << plan.groups[group].name;
+            write_phase(out, job, group, Phase::transient, plan.steady_after_s);
+            write_phase(out, job, group, Phase::steady, plan.steady_after_s);
+            for (const double error : job.normalised_error) {
                 out << ',' << number_text(error);
             }
-            const UnitResult* const draw = &unit;
-            out << ',' << number_text(lost_share({&draw, 1}, group)) << ',' << number_text(unit.median_us)
-                << ',' << unit.operations << ',' << unit.state_bytes << ',' << unit.columns << '\n';
+            const JobResult* const draw = &job;
+            out << ',' << number_text(lost_share({&draw, 1}, group)) << ',' << number_text(job.median_us)
+                << ',' << job.operations << ',' << job.state_bytes << ',' << job.columns << '\n';
         }
     }
     for (const OpponentErrors& opponent : opponents.errors) {

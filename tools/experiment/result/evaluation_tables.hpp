@@ -14,18 +14,18 @@
 namespace dfdyn::tools {
 
 /// Returns the draws of one case, in the plan's order.
-std::vector<const UnitResult*> draws_of(std::span<const UnitResult> units, const std::string& case_name);
+std::vector<const JobResult*> draws_of(std::span<const JobResult> jobs, const std::string& case_name);
 
 /// Returns the distribution of one group's ε over all draws, subsets and times: one row per case.
-ReportTable error_table(const Plan& plan, std::span<const UnitResult> units, std::size_t group);
+ReportTable error_table(const Plan& plan, std::span<const JobResult> jobs, std::size_t group);
 
 /// Returns the one-step nRMSE of each output: one row per case (medians over the draws), then one per
 /// alternative method.
-ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units,
+ReportTable step_error_table(const Plan& plan, std::span<const JobResult> jobs,
                              const PlanOpponents& opponents, const std::vector<std::string>& outputs);
 
 /// Returns the cost of each case, one row per case.
-ReportTable cost_table(const Plan& plan, std::span<const UnitResult> units);
+ReportTable cost_table(const Plan& plan, std::span<const JobResult> jobs);
 
 ReportTable comparison_table(const std::string& caption, std::span<const ComparisonOutcome> outcomes);
 
@@ -34,7 +34,7 @@ ReportTable finding_table(std::span<const FindingOutcome> findings);
 
 /// Writes one row per case, draw and group, then one per alternative method: see docs/guide/evaluation.md for
 /// the columns.
-void write_results_csv(std::ostream& out, const Plan& plan, std::span<const UnitResult> units,
+void write_results_csv(std::ostream& out, const Plan& plan, std::span<const JobResult> jobs,
                        const PlanOpponents& opponents, const std::vector<std::string>& outputs);
 
 } // namespace dfdyn::tools

@@ -59,12 +59,12 @@ std::vector<bool> common_ticks(const Plan& plan, const PlanData& data, std::size
     return common;
 }
 
-void keep_common_ticks(const Plan& plan, const PlanData& data, std::span<UnitResult> units) {
+void keep_common_ticks(const Plan& plan, const PlanData& data, std::span<JobResult> jobs) {
     for (std::size_t group = 0; group < plan.groups.size(); ++group) {
         for (std::size_t subset = 0; subset < data.subsets.size(); ++subset) {
             const std::vector<bool> common = common_ticks(plan, data, group, subset);
-            for (UnitResult& unit : units) {
-                keep(common, unit.error[group][subset]);
+            for (JobResult& job : jobs) {
+                keep(common, job.error[group][subset]);
             }
         }
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/experiment/plan/plan_data.hpp"
-#include "tools/experiment/run/unit_result.hpp"
+#include "tools/experiment/run/job_result.hpp"
 
 #include <cstddef>
 #include <span>
@@ -19,8 +19,8 @@ std::size_t largest_window(const Plan& plan);
 /// nonzero in at least one of these samples. Cost O(rows horizon outputs).
 std::vector<bool> common_ticks(const Plan& plan, const PlanData& data, std::size_t group, std::size_t subset);
 
-/// Makes the units' errors comparable: NaN at all other ticks, and infinite at common ticks without a finite
-/// error, where a unit diverged or its estimator rejected a sample.
-void keep_common_ticks(const Plan& plan, const PlanData& data, std::span<UnitResult> units);
+/// Makes the jobs' errors comparable: NaN at all other ticks, and infinite at common ticks without a finite
+/// error, where a job diverged or its estimator rejected a sample.
+void keep_common_ticks(const Plan& plan, const PlanData& data, std::span<JobResult> jobs);
 
 } // namespace dfdyn::tools

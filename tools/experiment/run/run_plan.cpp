@@ -3,8 +3,8 @@
 
 #include "tools/base/text/error.hpp"
 #include "tools/experiment/run/common_ticks.hpp"
-#include "tools/experiment/run/run_unit.hpp"
-#include "tools/experiment/run/unit_file.hpp"
+#include "tools/experiment/run/job_file.hpp"
+#include "tools/experiment/run/run_job.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -21,14 +21,14 @@ namespace dfdyn::tools {
 namespace {
 
 /// One case with one draw, and its result.
-struct Unit {
-    Unit(const Case& its_case, std::uint64_t its_seed, std::filesystem::path its_path)
+struct Job {
+    Job(const Case& its_case, std::uint64_t its_seed, std::filesystem::path its_path)
         : one(its_case), seed(its_seed), path(std::move(its_path)) {}
 
     const Case& one;
     std::uint64_t seed;
     std::filesystem::path path;
-    std::optional<UnitResult> result;
+    std::optional<JobResult> result;
     std::string failure;
     bool reused = false;
     std::atomic<double> done = 0; ///< completed share
@@ -44,8 +44,8 @@ class PlanRun {
         for (const Case& one : plan.cases) {
             memories_.try_emplace(one.name);
             for (const std::uint64_t seed : plan.seeds) {
-                units_.emplace_back(one, seed,
-                                    options.folder / "cases" / one.name / (std::to_string(seed) + ".json"));
+                jobs_.emplace_back(one, seed,
+                                   options.folder / "cases" / one.name / (std::to_string(seed) + ".json"));
             }
         }
     }
@@ -67,64 +67,64 @@ class PlanRun {
 
     EvaluationResults results() {
         EvaluationResults results;
-        for (Unit& unit : units_) {
-            if (unit.result) {
-                results.units.push_back(std::move(*unit.result));
-                results.reused += unit.reused ? 1 : 0;
+        for (Job& job : jobs_) {
+            if (job.result) {
+                results.jobs.push_back(std::move(*job.result));
+                results.reused += job.reused ? 1 : 0;
             } else {
-                results.failed.push_back({unit.one.name, unit.seed, unit.failure});
+                results.failed.push_back({job.one.name, job.seed, job.failure});
             }
         }
-        keep_common_ticks(plan_, data_, results.units);
+        keep_common_ticks(plan_, data_, results.jobs);
         return results;
     }
 
   private:
     void work() {
         try {
-            for (std::size_t next = next_++; next < units_.size(); next = next_++) {
-                do_unit(unit_in_turn(next));
+            for (std::size_t next = next_++; next < jobs_.size(); next = next_++) {
+                finish_job(job_in_turn(next));
             }
         } catch (...) {
             const std::lock_guard lock(mutex_);
             fault_ = std::current_exception();
-            next_ = units_.size();
+            next_ = jobs_.size();
         }
         const std::lock_guard lock(mutex_);
         --running_;
         finished_.notify_all();
     }
 
-    /// Returns the units in the order of the work: the first draws of all cases before any second draw. The
+    /// Returns the jobs in the order of the work: the first draws of all cases before any second draw. The
     /// cases are then tuned in parallel, and no draw waits for the tuning of its case.
-    Unit& unit_in_turn(std::size_t turn) {
+    Job& job_in_turn(std::size_t turn) {
         const std::size_t cases = plan_.cases.size();
-        return units_[turn % cases * plan_.seeds.size() + turn / cases];
+        return jobs_[turn % cases * plan_.seeds.size() + turn / cases];
     }
 
-    void do_unit(Unit& unit) {
-        const nlohmann::ordered_json inputs = unit_inputs(plan_, data_, unit.one, unit.seed);
+    void finish_job(Job& job) {
+        const nlohmann::ordered_json inputs = job_inputs(plan_, data_, job.one, job.seed);
         if (!options_.fresh) {
-            unit.result = read_unit(unit.path, inputs);
-            unit.reused = unit.result.has_value();
+            job.result = read_job(job.path, inputs);
+            job.reused = job.result.has_value();
         }
         try {
-            if (!unit.result) {
-                unit.result = write_unit(unit.path, inputs,
-                                         run_unit(plan_, data_, unit.one, unit.seed, memories_, threads_,
-                                                  [&unit](double share) { unit.done = share; }));
+            if (!job.result) {
+                job.result = write_job(job.path, inputs,
+                                       run_job(plan_, data_, job.one, job.seed, memories_, threads_,
+                                               [&job](double share) { job.done = share; }));
             }
         } catch (const InputError& error) {
-            unit.result.reset();
-            unit.failure = error.what();
+            job.result.reset();
+            job.failure = error.what();
         }
-        unit.done = 1;
+        job.done = 1;
     }
 
     double share_done() const {
         double sum = 0;
-        for (const Unit& unit : units_) {
-            sum += unit.done;
+        for (const Job& job : jobs_) {
+            sum += job.done;
         }
         return sum;
     }
@@ -132,9 +132,9 @@ class PlanRun {
     const Plan& plan_;
     const PlanData& data_;
     const RunOptions& options_;
-    CaseMemories memories_;  ///< complete before the work begins
-    std::deque<Unit> units_; ///< in the order of cases, then draws
-    int threads_ = 1;        ///< per training
+    CaseMemories memories_; ///< complete before the work begins
+    std::deque<Job> jobs_;  ///< in the order of cases, then draws
+    int threads_ = 1;       ///< per training
     std::atomic<std::size_t> next_ = 0;
     std::mutex mutex_;
     std::condition_variable finished_;

@@ -2,7 +2,7 @@
 #include "tools/model/run_time/combined_estimator.hpp"
 
 #include "dfdyn/forecast_combination.hpp"
-#include "dfdyn/monitor/held_weights.hpp"
+#include "dfdyn/monitor/delayed_weights.hpp"
 #include "tools/base/numerics/dynamic_storage.hpp"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ float unjudged_factor_of(const Members& members) {
 
 bool refused(Reason learning) { return learning == Reason::output_missing || is_fault(learning); }
 
-class CombinedEstimator final : public HostEstimator {
+class CombinedEstimator final : public RuntimeEstimator {
   public:
     CombinedEstimator(Members members, std::size_t outputs, double sample_period_s)
         : members_(std::move(members)), outputs_(outputs),
@@ -93,7 +93,7 @@ class CombinedEstimator final : public HostEstimator {
         std::vector<float> of_members(predictions_.size());
         std::vector<float> combined(predictions_.size());
         for (std::size_t j = 0; j < members_.size(); ++j) {
-            const HostEstimator& member = *members_[j].estimator;
+            const RuntimeEstimator& member = *members_[j].estimator;
             const std::span<float> of_member = std::span(of_members).subspan(j * outputs_, outputs_);
             within = member.predict_with(rest.first(member.weight_count()), of_member) || within;
             rest = rest.subspan(member.weight_count());
@@ -105,7 +105,7 @@ class CombinedEstimator final : public HostEstimator {
 
     /// Number of the combination's mean square errors plus the members' weights.
     std::size_t weight_count() const override {
-        return sum_over_members([](const HostEstimator& member) { return member.weight_count(); },
+        return sum_over_members([](const RuntimeEstimator& member) { return member.weight_count(); },
                                 predictions_.size());
     }
     void copy_weights(std::span<float> weights) const override {
@@ -154,7 +154,7 @@ class CombinedEstimator final : public HostEstimator {
     }
 
     std::size_t state_bytes() const override {
-        return sum_over_members([](const HostEstimator& member) { return member.state_bytes(); },
+        return sum_over_members([](const RuntimeEstimator& member) { return member.state_bytes(); },
                                 combination_.snapshot_bytes());
     }
 
@@ -206,7 +206,7 @@ class CombinedEstimator final : public HostEstimator {
     void learn(std::span<const double> output) {
         std::ranges::transform(output, measured_.begin(), [](double y) { return static_cast<float>(y); });
         for (std::size_t j = 0; j < members_.size(); ++j) {
-            const HostEstimator& member = *members_[j].estimator;
+            const RuntimeEstimator& member = *members_[j].estimator;
             member.predict_with({held_[j].older(), member.weight_count()},
                                 std::span(ahead_).subspan(j * outputs_, outputs_));
         }
@@ -223,8 +223,8 @@ class CombinedEstimator final : public HostEstimator {
 
     void hold() {
         for (std::size_t j = 0; j < members_.size(); ++j) {
-            const HostEstimator& member = *members_[j].estimator;
-            member.copy_weights({held_[j].renew(), member.weight_count()});
+            const RuntimeEstimator& member = *members_[j].estimator;
+            member.copy_weights({held_[j].refresh(), member.weight_count()});
         }
     }
 
@@ -264,14 +264,14 @@ class CombinedEstimator final : public HostEstimator {
     Combination combination_;
     long period_;         ///< between two copies of the weights, samples
     long since_held_ = 0; ///< samples
-    std::vector<HeldWeights<float, dynamic>> held_;
+    std::vector<DelayedWeights<float, dynamic>> held_;
     std::vector<float> predictions_, ahead_, deviations_; ///< members × outputs
     std::vector<float> measured_, prediction_, deviation_;
 };
 
 } // namespace
 
-std::unique_ptr<HostEstimator> combine(Members members, std::size_t outputs, double sample_period_s) {
+std::unique_ptr<RuntimeEstimator> combine(Members members, std::size_t outputs, double sample_period_s) {
     return std::make_unique<CombinedEstimator>(std::move(members), outputs, sample_period_s);
 }
 

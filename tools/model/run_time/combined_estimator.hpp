@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 
 #include <memory>
 #include <vector>
@@ -15,7 +15,7 @@ inline constexpr double combination_memory_s = 0.8;
 inline constexpr double held_weights_period_s = 0.2;
 
 struct CombinationMember {
-    std::unique_ptr<HostEstimator> estimator;
+    std::unique_ptr<RuntimeEstimator> estimator;
     double innovation_limit;       ///< limit of its model
     std::vector<double> noise_std; ///< of its model, m values
     bool calibrated = false;       ///< its model has measured uncertainties away from its data
@@ -35,7 +35,7 @@ struct CombinationMember {
 ///   variances alone.
 ///
 /// `members`: at least one. `sample_period_s` > 0.
-std::unique_ptr<HostEstimator> combine(std::vector<CombinationMember> members, std::size_t outputs,
-                                       double sample_period_s);
+std::unique_ptr<RuntimeEstimator> combine(std::vector<CombinationMember> members, std::size_t outputs,
+                                          double sample_period_s);
 
 } // namespace dfdyn::tools

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 
 #include <memory>
 #include <utility>
 
 namespace dfdyn::tools {
 
-/// An estimator that changes or observes another one. `Interface`: HostEstimator, or one derived from it.
+/// An estimator that changes or observes another one. `Interface`: RuntimeEstimator, or one derived from it.
 /// Every function calls that of the other estimator; derived classes override what differs.
 template <class Interface>
 class EstimatorDecorator : public Interface {
   public:
-    explicit EstimatorDecorator(std::unique_ptr<HostEstimator> estimator)
+    explicit EstimatorDecorator(std::unique_ptr<RuntimeEstimator> estimator)
         : estimator_(std::move(estimator)) {}
 
-    using HostEstimator::tick;
+    using RuntimeEstimator::tick;
     Tick tick(const MeasuredSample& sample, Budget budget) override {
         return estimator_->tick(sample, budget);
     }
@@ -34,11 +34,11 @@ class EstimatorDecorator : public Interface {
     Cost cost() const override { return estimator_->cost(); }
 
   protected:
-    HostEstimator& estimator() { return *estimator_; }
-    const HostEstimator& estimator() const { return *estimator_; }
+    RuntimeEstimator& estimator() { return *estimator_; }
+    const RuntimeEstimator& estimator() const { return *estimator_; }
 
   private:
-    std::unique_ptr<HostEstimator> estimator_;
+    std::unique_ptr<RuntimeEstimator> estimator_;
 };
 
 } // namespace dfdyn::tools

@@ -9,7 +9,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-class FrozenEstimator final : public EstimatorDecorator<HostEstimator> {
+class FrozenEstimator final : public EstimatorDecorator<RuntimeEstimator> {
   public:
     using EstimatorDecorator::EstimatorDecorator;
 
@@ -27,7 +27,7 @@ class FrozenEstimator final : public EstimatorDecorator<HostEstimator> {
 
 } // namespace
 
-std::unique_ptr<HostEstimator> frozen(std::unique_ptr<HostEstimator> estimator) {
+std::unique_ptr<RuntimeEstimator> frozen(std::unique_ptr<RuntimeEstimator> estimator) {
     return std::make_unique<FrozenEstimator>(std::move(estimator));
 }
 

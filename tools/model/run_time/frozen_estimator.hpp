@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 
 #include <memory>
 
@@ -9,6 +9,6 @@ namespace dfdyn::tools {
 
 /// Returns `estimator` with every budget replaced by Budget::predict_only(): it predicts and reports
 /// innovations without learning. No measured output changes a later prediction.
-std::unique_ptr<HostEstimator> frozen(std::unique_ptr<HostEstimator> estimator);
+std::unique_ptr<RuntimeEstimator> frozen(std::unique_ptr<RuntimeEstimator> estimator);
 
 } // namespace dfdyn::tools

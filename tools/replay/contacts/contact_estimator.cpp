@@ -23,7 +23,7 @@ void set_errors(const MeasuredSample& sample, const Tick& tick, std::span<float>
 
 class Watched final : public EstimatorDecorator<ContactEstimator> {
   public:
-    Watched(std::unique_ptr<HostEstimator> estimator, const ContactModel& contact)
+    Watched(std::unique_ptr<RuntimeEstimator> estimator, const ContactModel& contact)
         : EstimatorDecorator(std::move(estimator)), watch_(contact),
           position_(contact.limit.size() / joint_motion_count), error_(position_.size()), contacts_(kept) {}
 
@@ -150,7 +150,7 @@ std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& t
     return errors;
 }
 
-std::unique_ptr<ContactEstimator> with_contacts(std::unique_ptr<HostEstimator> estimator,
+std::unique_ptr<ContactEstimator> with_contacts(std::unique_ptr<RuntimeEstimator> estimator,
                                                 const ContactModel& contact) {
     return std::make_unique<Watched>(std::move(estimator), contact);
 }

@@ -4,7 +4,7 @@
 #include "dfdyn/monitor/contact_detector.hpp"
 #include "tools/base/numerics/dynamic_storage.hpp"
 #include "tools/model/model.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -64,7 +64,7 @@ ContactModel contact_limits(const TrainedModel& model, std::optional<double> per
 std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& tick);
 
 /// An estimator that detects contacts.
-class ContactEstimator : public HostEstimator {
+class ContactEstimator : public RuntimeEstimator {
   public:
     /// Returns the newest 4096 contacts since the last call, and removes them.
     virtual std::vector<DetectedContact> take_contacts() = 0;
@@ -74,7 +74,7 @@ class ContactEstimator : public HostEstimator {
 
 /// Returns an estimator that detects contacts with the limits `contact`. It learns neither during a contact
 /// nor while all joints are at rest.
-std::unique_ptr<ContactEstimator> with_contacts(std::unique_ptr<HostEstimator> estimator,
+std::unique_ptr<ContactEstimator> with_contacts(std::unique_ptr<RuntimeEstimator> estimator,
                                                 const ContactModel& contact);
 
 } // namespace dfdyn::tools

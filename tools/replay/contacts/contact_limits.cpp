@@ -57,7 +57,7 @@ struct PredictedRow {
 };
 
 /// Appends the rows from `first` to `last` that are predicted, without learning.
-void predict_rows(HostEstimator& estimator, std::span<const Recording> recordings, std::size_t first,
+void predict_rows(RuntimeEstimator& estimator, std::span<const Recording> recordings, std::size_t first,
                   std::size_t last, std::size_t pass, std::vector<PredictedRow>& predicted) {
     bool follows = false;
     tick_rows(estimator, recordings, first, last, Budget::predict_only(),
@@ -75,7 +75,7 @@ void predict_rows(HostEstimator& estimator, std::span<const Recording> recording
               });
 }
 
-void learn_rows_of(HostEstimator& estimator, std::span<const Recording> recordings, std::size_t first,
+void learn_rows_of(RuntimeEstimator& estimator, std::span<const Recording> recordings, std::size_t first,
                    std::size_t last) {
     tick_rows(estimator, recordings, first, last, Budget::unlimited(),
               [](const MeasuredSample&, const Tick&, bool) {});

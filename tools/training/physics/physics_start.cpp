@@ -74,11 +74,11 @@ ParameterPrior ParameterPrior::independent(Index p, double prior_variance) {
     return {VectorXd::Zero(p), MatrixXd::Identity(p, p) / prior_variance};
 }
 
-JointStart parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior) {
+CombinedPrior parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior) {
     return {{}, solved(physics_equations(problem, prior), prior)};
 }
 
-JointStart residual_start(const PhysicsProblem& problem, const VectorXd& parameters) {
+CombinedPrior residual_start(const PhysicsProblem& problem, const VectorXd& parameters) {
     ScaledProblem scaled(problem);
     for (Index k = 0; k < scaled.outputs.cols(); ++k) {
         scaled.outputs.col(k) -= scaled.columns_of(k) * parameters;
@@ -86,7 +86,7 @@ JointStart residual_start(const PhysicsProblem& problem, const VectorXd& paramet
     return {batch_start(problem.model, problem.data, problem.rows, scaled.outputs), {parameters, {}, {}, {}}};
 }
 
-JointStart joint_start(const PhysicsProblem& problem, const ParameterPrior& prior) {
+CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior& prior) {
     const auto samples = static_cast<Index>(problem.rows.size());
     const auto count = static_cast<Index>(problem.model.outputs.noise_std.size());
     const Index p = problem.columns.cols() / count;
@@ -105,16 +105,16 @@ JointStart joint_start(const PhysicsProblem& problem, const ParameterPrior& prio
         schur.right_hand_side -= coupling.transpose() * kernel.right_hand_side.col(k);
         couplings.push_back(coupling);
     }
-    JointStart start{{}, solved(std::move(schur), prior)};
+    CombinedPrior start{{}, solved(std::move(schur), prior)};
     start.physics.coupling = std::move(couplings);
     start.kernel.weights.assign(solution.data(), solution.data() + solution.rows() * count);
     store_inverse(factor, start.kernel.unit_upper, start.kernel.diagonal);
     return start;
 }
 
-JointStart physics_start(const Structure& structure, const PhysicsProblem& problem,
-                         const ParameterPrior& prior) {
-    return structure.fits_jointly() ? joint_start(problem, prior) : parametric_start(problem, prior);
+CombinedPrior physics_start(const Structure& structure, const PhysicsProblem& problem,
+                            const ParameterPrior& prior) {
+    return structure.fits_jointly() ? combined_prior(problem, prior) : parametric_start(problem, prior);
 }
 
 } // namespace dfdyn::tools

@@ -23,7 +23,7 @@ struct PhysicsStart {
 };
 
 /// Initial states of NP's part and of the physics.
-struct JointStart {
+struct CombinedPrior {
     StartModel kernel; ///< P: empty. SPK: `weights` holds A_k. Otherwise those of the residual.
     PhysicsStart physics;
 };
@@ -48,18 +48,18 @@ struct ParameterPrior {
 /// Returns the regularised least-squares solution (paper, Section IV-B) of P: pi^ and its covariance under
 /// the prior. The prior's weight under forgetting is that of batch_start(). O(N m p^2 + p^3). Throws
 /// InputError if the information matrix cannot be factored.
-JointStart parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior);
+CombinedPrior parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior);
 
 /// SP, SP2: returns NP's initial state for the residual of the outputs with fixed `parameters`.
-JointStart residual_start(const PhysicsProblem& problem, const Eigen::VectorXd& parameters);
+CombinedPrior residual_start(const PhysicsProblem& problem, const Eigen::VectorXd& parameters);
 
 /// Returns the initial state of SPK in block-arrow form: the factor of Lambda_phi, common to all outputs, and
 /// the Schur complement of pi. Equal to the joint solution for all unknowns. O(N (2d)^2 + N m 2d p + (2d)^3).
-JointStart joint_start(const PhysicsProblem& problem, const ParameterPrior& prior);
+CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior& prior);
 
 /// Returns joint_start() for a structure whose physics and features are fitted jointly, otherwise
 /// parametric_start().
-JointStart physics_start(const Structure& structure, const PhysicsProblem& problem,
-                         const ParameterPrior& prior);
+CombinedPrior physics_start(const Structure& structure, const PhysicsProblem& problem,
+                            const ParameterPrior& prior);
 
 } // namespace dfdyn::tools

@@ -145,7 +145,7 @@ class BlockArrow {
 
     /// Writes 1 + the variance of each output's mean at the last learned sample, before it was learned;
     /// returns φ'Pφ of that time.
-    Scalar last_ratios(Scalar* ratios) const noexcept {
+    Scalar last_variance_ratios(Scalar* ratios) const noexcept {
         for (int k = 0; k < outputs_; ++k) {
             ratios[k] = alpha_ + (1 - noise_variance_) + common_.last_variances()[k];
         }

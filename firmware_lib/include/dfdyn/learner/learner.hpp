@@ -49,7 +49,7 @@ struct LearnerConstants {
 ///  - `reset_covariance()`: when `idle()`, begins to reset the covariance to the prior's, in `advance`.
 ///  - `advance(budget)`: continues the present task; true when nothing is left to do.
 ///  - `sample_pending()`: the row is not learned yet. With forgetting, more work follows after it is.
-///  - `last_ratio()`: returns 1 + φ'Pφ of the last row, before it was learned.
+///  - `last_variance_ratio()`: returns 1 + φ'Pφ of the last row, before it was learned.
 ///  - `reset()`: returns to the initial state.
 template <class L, class Scalar>
 concept Learner = requires(L learner, const L& constant, const Scalar* row, Scalar* means, Budget& budget) {
@@ -70,7 +70,7 @@ concept Learner = requires(L learner, const L& constant, const Scalar* row, Scal
     noexcept;
     { learner.advance(budget) }
     noexcept->std::same_as<bool>;
-    { constant.last_ratio() }
+    { constant.last_variance_ratio() }
     noexcept->std::same_as<Scalar>;
 };
 

@@ -113,7 +113,7 @@ class UdCovariance {
     }
 
     /// Returns 1 + φ'Pφ / (noise variance) of the last learned row, before it was learned.
-    [[nodiscard]] Scalar last_ratio() const noexcept { return ratio_; }
+    [[nodiscard]] Scalar last_variance_ratio() const noexcept { return ratio_; }
 
     /// Returns the weights of one output, p values in units of its noise.
     [[nodiscard]] const Scalar* weights(int output) const noexcept {

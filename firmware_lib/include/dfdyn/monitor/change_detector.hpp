@@ -4,7 +4,7 @@
 #include "dfdyn/core/budget.hpp"
 #include "dfdyn/core/storage.hpp"
 #include "dfdyn/monitor/block_noise.hpp"
-#include "dfdyn/monitor/excursion_tail.hpp"
+#include "dfdyn/monitor/false_alarm_threshold.hpp"
 #include "dfdyn/monitor/output_block.hpp"
 #include "dfdyn/monitor/standstill_range.hpp"
 
@@ -37,10 +37,11 @@ inline constexpr int departure_count = 6;
 /// that stiction has shown in earlier standstills (`StandstillRange`): the excess of its level, or a larger
 /// change from block to block.
 ///
-/// The threshold of each kind follows from its own excursions (`ExcursionTail`). All kinds together exceed
-/// their thresholds at most once in `blocks_between_false_alarms` while the innovations are stationary. The
-/// onset is the block in which the sum of the alarm last left zero. The alarm ends when every sum is below
-/// half its threshold: the change was learned or has passed. `nothing_happened` reports a false alarm.
+/// The threshold of each kind follows from its own excursions (`FalseAlarmThreshold`). All kinds together
+/// exceed their thresholds at most once in `blocks_between_false_alarms` while the innovations are
+/// stationary. The onset is the block in which the sum of the alarm last left zero. The alarm ends when every
+/// sum is below half its threshold: the change was learned or has passed. `nothing_happened` reports a false
+/// alarm.
 ///
 /// Cost per block: `cost(m)`. Memory: about 55 m numbers.
 template <class Scalar, int m>
@@ -131,13 +132,13 @@ class ChangeDetector {
 
     /// Adds the excursion of the last alarm to the usual ones: it was a false alarm.
     void nothing_happened() noexcept {
-        ExcursionTail<Scalar>& tail = tails_[static_cast<int>(departure())];
+        FalseAlarmThreshold<Scalar>& tail = tails_[static_cast<int>(departure())];
         tail.add(limits_[static_cast<int>(departure())]);
     }
 
     /// Multiply-adds of `add`, at most.
     static constexpr std::int64_t cost(int outputs) noexcept {
-        const std::int64_t limits = std::int64_t{departure_count} * ExcursionTail<Scalar>::limit_cost;
+        const std::int64_t limits = std::int64_t{departure_count} * FalseAlarmThreshold<Scalar>::limit_cost;
         return limits + outputs * (BlockNoise<Scalar>::cost + function_cost + 66) +
                shared_columns * (function_cost + 8) + 2 * sums_of(outputs);
     }
@@ -288,7 +289,7 @@ class ChangeDetector {
             return;
         }
         if (2 * settled_ >= settling_blocks) {
-            for (ExcursionTail<Scalar>& tail : tails_) {
+            for (FalseAlarmThreshold<Scalar>& tail : tails_) {
                 tail.add_block();
             }
             set_limits();
@@ -332,7 +333,7 @@ class ChangeDetector {
     Storage<BlockNoise<Scalar>, m> noise_;
     Storage<StandstillRange<Scalar>, m> range_;
     Storage<Cusum, sums_of(m)> sums_;
-    ExcursionTail<Scalar> tails_[departure_count];
+    FalseAlarmThreshold<Scalar> tails_[departure_count];
     Scalar limits_[departure_count] = {};
     Scalar power_[shared_columns] = {}; ///< mean of Σ g²
     Scalar powers_ = 0;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "dfdyn/input/derivative_free_reduced.hpp"
-#include "dfdyn/monitor/cause_bank.hpp"
 #include "dfdyn/monitor/change_detector.hpp"
 #include "dfdyn/monitor/frozen_watch.hpp"
+#include "dfdyn/monitor/hypothesis_bank.hpp"
 #include "dfdyn/monitor/tool_columns.hpp"
 
 #include <type_traits>
@@ -19,21 +19,21 @@ struct Observation {
     const Scalar* output;             ///< measured, output units
     const Scalar* prediction;         ///< one-step-ahead prediction of the estimator
     const Scalar* standard_deviation; ///< of the output around that prediction
-    const Scalar* held_prediction;    ///< with delayed weights (`HeldWeights`)
+    const Scalar* held_prediction;    ///< with delayed weights (`DelayedWeights`)
 };
 
 /// Fault detection and isolation (FDI): detects changes of the arm or its sensors from the innovations of an
 /// estimator, and estimates cause, place and size.
 ///
-/// A `ChangeDetector` tests block means of the one-step-ahead innovations. After an alarm a `CauseBank` fits
-/// the causes to the block means of the residuals since the onset, at most `history` blocks back. Residuals
-/// are measured outputs minus `held_prediction`, because the estimator may already have learned the change.
-/// The result is updated until the change is over: the innovations are as before, or `longest_blocks` have
-/// passed. A `FrozenWatch` raises its own alarm for a reading that repeats beyond chance.
+/// A `ChangeDetector` tests block means of the one-step-ahead innovations. After an alarm a `HypothesisBank`
+/// fits the causes to the block means of the residuals since the onset, at most `history` blocks back.
+/// Residuals are measured outputs minus `held_prediction`, because the estimator may already have learned the
+/// change. The result is updated until the change is over: the innovations are as before, or `longest_blocks`
+/// have passed. A `FrozenWatch` raises its own alarm for a reading that repeats beyond chance.
 ///
 /// Use in each tick, while the learner is idle:
 ///
-///     if (monitor.renewal_due()) {
+///     if (monitor.refresh_due()) {
 ///         regression.copy_weights(held.renew());
 ///         monitor.renewed();
 ///     }
@@ -69,7 +69,7 @@ class Monitor {
         Scalar blocks_between_false_alarms; ///< mean distance, all outputs together
         std::int32_t report_blocks;         ///< from the onset to the first report, about 2 s
         std::int32_t longest_blocks;        ///< largest duration of a change, about 20 s
-        std::int32_t renewal_blocks;        ///< refresh period of the delayed weights, about 3 s
+        std::int32_t refresh_blocks;        ///< refresh period of the delayed weights, about 3 s
     };
 
     static constexpr int catch_up = 3; ///< stored blocks that the bank adds per new block
@@ -104,7 +104,7 @@ class Monitor {
           repeats_limit_(2 * std::log(constants.blocks_between_false_alarms *
                                       static_cast<Scalar>(joints() + outputs()))) {
         change_.bias = Outputs::zeros(constants.sizes.output_count);
-        since_renewal_ = 2 * constants.renewal_blocks;
+        since_refresh_ = 2 * constants.refresh_blocks;
     }
 
     /// Processes one tick. Values that are not finite or an absurd position count as a gap. Returns true if
@@ -146,16 +146,16 @@ class Monitor {
         interrupt();
         detector_.restart();
         changing_ = false;
-        since_renewal_ = 2 * constants_->renewal_blocks;
+        since_refresh_ = 2 * constants_->refresh_blocks;
     }
 
     /// Returns true if the delayed weights are due for a refresh; call `renewed` after it. Both copies are
     /// due at the start and after a change, so that none is from before.
-    [[nodiscard]] bool renewal_due() const noexcept {
-        return !changing_ && since_renewal_ >= constants_->renewal_blocks;
+    [[nodiscard]] bool refresh_due() const noexcept {
+        return !changing_ && since_refresh_ >= constants_->refresh_blocks;
     }
     /// Registers that the delayed weights have been refreshed.
-    void renewed() noexcept { since_renewal_ -= constants_->renewal_blocks; }
+    void refreshed() noexcept { since_refresh_ -= constants_->refresh_blocks; }
 
     /// Returns true from an alarm until the change is over.
     [[nodiscard]] bool changing() const noexcept { return changing_; }
@@ -169,7 +169,7 @@ class Monitor {
         const std::int64_t tick =
             Motion::template Map<Scalar, n>::cost(joints, lags, 3) + tool_columns_cost(joints, outputs) +
             FrozenWatch<Scalar, 1>::cost * (joints + outputs) + std::int64_t{outputs} * (function_cost + 30);
-        using Bank = CauseBank<Scalar, m>;
+        using Bank = HypothesisBank<Scalar, m>;
         return tick + ChangeDetector<Scalar, m>::cost(outputs) + catch_up * Bank::cost_of_add(outputs) +
                std::max(Bank::cost_of_start(outputs, history), Bank::cost_of_judge(outputs));
     }
@@ -264,7 +264,7 @@ class Monitor {
         ends_ns_[slot(newest_)] = time_ns;
         unbroken_ = follows_ ? std::min(unbroken_ + 1, history) : 1;
         follows_ = true;
-        ++since_renewal_;
+        ++since_refresh_;
     }
 
     void drop_block() noexcept {
@@ -368,7 +368,7 @@ class Monitor {
         change_.end_ns = time_ns;
         changing_ = false;
         told_frozen_ = change_.cause == Cause::frozen ? change_.where : -1;
-        since_renewal_ = 2 * constants_->renewal_blocks;
+        since_refresh_ = 2 * constants_->refresh_blocks;
         if (by_detector_ && change_.cause == Cause::unknown) {
             detector_.nothing_happened();
         }
@@ -390,14 +390,14 @@ class Monitor {
     Past past_;                                ///< ring of the last blocks
     Storage<std::int64_t, history> ends_ns_{}; ///< their end times
     ChangeDetector<Scalar, m> detector_;
-    CauseBank<Scalar, m> bank_;
+    HypothesisBank<Scalar, m> bank_;
     FrozenWatch<Scalar, sum(n, m)> frozen_;
     Scalar repeats_limit_; ///< evidence above which a channel is frozen
     Change change_;
     int samples_ = 0; ///< in the current block
     std::int64_t newest_ = 0, onset_ = 0, next_ = 0, alarm_ = 0;
     int unbroken_ = 0; ///< consecutive blocks up to the newest, without a gap
-    int since_renewal_ = 0;
+    int since_refresh_ = 0;
     int frozen_channel_ = -1, told_frozen_ = -1;
     Scalar frozen_evidence_ = 0;
     bool follows_ = false, changing_ = false, told_ = false, by_detector_ = false, fitting_ = false;

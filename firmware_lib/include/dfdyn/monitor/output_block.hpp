@@ -17,7 +17,7 @@ template <class Scalar>
 struct OutputBlock {
     Scalar innovation; ///< divided by its predicted standard deviation
     Scalar deviation;  ///< predicted standard deviation of the innovation, output units
-    Scalar residual;   ///< measurement minus prediction with delayed weights (`HeldWeights`), output units
+    Scalar residual;   ///< measurement minus prediction with delayed weights (`DelayedWeights`), output units
     Scalar speed;      ///< magnitude for the output's joint, rad/s or m/s; 0 for a wrench
     Scalar payload[payload_columns];
     Scalar force[force_columns];

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "dfdyn/learner/ud_covariance.hpp"
-#include "dfdyn/structure/absent.hpp"
 #include "dfdyn/structure/feature_columns.hpp"
+#include "dfdyn/structure/null_components.hpp"
 
 #include <algorithm>
 
@@ -71,9 +71,9 @@ struct Nonparametric {
             fill(ratio, ratios);
             return ratio - 1;
         }
-        Scalar last_ratios(Scalar* ratios) const noexcept {
-            fill(learner_.last_ratio(), ratios);
-            return learner_.last_ratio() - 1;
+        Scalar last_variance_ratios(Scalar* ratios) const noexcept {
+            fill(learner_.last_variance_ratio(), ratios);
+            return learner_.last_variance_ratio() - 1;
         }
 
         [[nodiscard]] bool idle() const noexcept { return learner_.idle(); }

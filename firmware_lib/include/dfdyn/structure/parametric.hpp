@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dfdyn/learner/common_parameters.hpp"
-#include "dfdyn/structure/absent.hpp"
+#include "dfdyn/structure/null_components.hpp"
 #include "dfdyn/structure/physics_columns.hpp"
 
 #include <algorithm>
@@ -67,7 +67,7 @@ struct Parametric {
             add_noise(ratios);
             return 0;
         }
-        Scalar last_ratios(Scalar* ratios) const noexcept {
+        Scalar last_variance_ratios(Scalar* ratios) const noexcept {
             for (int k = 0; k < outputs_; ++k) {
                 ratios[k] = learner_.last_variances()[k];
             }

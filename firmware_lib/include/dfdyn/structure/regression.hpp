@@ -37,7 +37,7 @@ concept ColumnsOf = requires(C columns, const C& constant, Scalar* values, const
 ///    (covariance resetting: G. C. Goodwin, K. S. Sin, "Adaptive Filtering, Prediction and Control", 1984).
 ///  - `advance(budget)`: continues either task; true when nothing is left to do.
 ///  - `sample_pending()`: a sample has begun and is not learned yet.
-///  - `last_ratios(ratios)`: `variances` at the last learned sample, before it was learned.
+///  - `last_variance_ratios(ratios)`: `variances` at the last learned sample, before it was learned.
 ///  - `weight_count`, `copy_weights` (when idle), `predict_with(weights, means)`: the learned weights as
 ///    numbers, to predict with later.
 ///  - `reset()`: returns to the initial state.
@@ -52,7 +52,7 @@ concept RegressionOf = requires(R regression, const R& constant, Scalar* values,
     regression.predict(values);
     constant.predict_without_features(values);
     { constant.variances(values) } -> std::same_as<Scalar>;
-    { constant.last_ratios(values) } -> std::same_as<Scalar>;
+    { constant.last_variance_ratios(values) } -> std::same_as<Scalar>;
     { constant.idle() } -> std::same_as<bool>;
     { constant.sample_pending() } -> std::same_as<bool>;
     regression.begin(numbers, *numbers);

@@ -100,7 +100,9 @@ struct SemiparametricKernel {
             }
             return of_features;
         }
-        Scalar last_ratios(Scalar* ratios) const noexcept { return learner_.last_ratios(ratios); }
+        Scalar last_variance_ratios(Scalar* ratios) const noexcept {
+            return learner_.last_variance_ratios(ratios);
+        }
 
         [[nodiscard]] bool idle() const noexcept { return learner_.idle(); }
         [[nodiscard]] bool sample_pending() const noexcept { return learner_.sample_pending(); }

@@ -4,8 +4,8 @@
 #include "dfdyn/hal/assembly/bus_watch.hpp"
 #include "dfdyn/hal/assembly/effort_output.hpp"
 #include "dfdyn/hal/assembly/joint_tracks.hpp"
-#include "dfdyn/hal/assembly/moment.hpp"
 #include "dfdyn/hal/assembly/sample_report.hpp"
+#include "dfdyn/hal/assembly/sample_trigger.hpp"
 #include "dfdyn/hal/assembly/wrench_output.hpp"
 #include "dfdyn/hal/bus.hpp"
 #include "dfdyn/sample.hpp"
@@ -64,10 +64,10 @@ class SampleAssembly {
           output_bus_(config.output_bus), watch_{BusWatch(config.clock), BusWatch(config.clock)},
           moments_(config.joints) {}
 
-    using Moment = SampleMoment; ///< an instant of which a sample can be assembled
+    using SampleTrigger = SampleMoment; ///< an instant of which a sample can be assembled
 
     /// Accepts a frame of bus 0 or 1, read at `now_ns`. Returns the instant that it completes, if any.
-    constexpr Moment take(const Frame& frame, std::int64_t now_ns, int bus = 0) noexcept {
+    constexpr SampleTrigger take(const Frame& frame, std::int64_t now_ns, int bus = 0) noexcept {
         BusWatch& watch = watch_[static_cast<std::size_t>(bus)];
         if (frame.error) {
             return {}; // the bus has counted it and has it in its state
@@ -98,8 +98,8 @@ class SampleAssembly {
             const std::span<const Frame> frames = bus.drain(buffer);
             update(bus.state(), bus.counters(), index);
             for (const Frame& frame : frames) {
-                if (const Moment moment = take(frame, bus.now_ns(), index);
-                    moment.kind != Moment::Kind::none) {
+                if (const SampleTrigger moment = take(frame, bus.now_ns(), index);
+                    moment.kind != SampleTrigger::Kind::none) {
                     on_moment(moment);
                 }
             }
@@ -112,7 +112,7 @@ class SampleAssembly {
     template <Bus B>
     constexpr void drain(B& bus, std::span<Frame> buffer, int index = 0) noexcept {
         drain(
-            bus, buffer, [](const Moment& /*moment*/) {}, index);
+            bus, buffer, [](const SampleTrigger& /*moment*/) {}, index);
     }
 
     /// Accepts the state and the counters of a bus after a drain. `drain` calls it.
@@ -194,9 +194,9 @@ class SampleAssembly {
     [[nodiscard]] constexpr std::size_t used() const noexcept { return static_cast<std::size_t>(joints_); }
 
     /// To the boards and the sensor that are on this bus.
-    constexpr Moment offer(const Frame& frame, int bus) noexcept {
+    constexpr SampleTrigger offer(const Frame& frame, int bus) noexcept {
         bool known = false;
-        Moment moment;
+        SampleTrigger moment;
         if (bus == 0) {
             for (Board& board : board_) {
                 const Decoded decoded = board.decode(frame);
@@ -215,12 +215,13 @@ class SampleAssembly {
         if (!known) {
             watch_[static_cast<std::size_t>(bus)].unknown.add(frame, Reason::ok);
         }
-        return moment.kind == Moment::Kind::none && output_.heard() ? moments_.completed(output_.newest_ns())
-                                                                    : moment;
+        return moment.kind == SampleTrigger::Kind::none && output_.heard()
+                   ? moments_.completed(output_.newest_ns())
+                   : moment;
     }
 
-    constexpr Moment take_decoded(const Decoded& decoded, const Frame& frame, int bus,
-                                  const Moment& moment) noexcept {
+    constexpr SampleTrigger take_decoded(const Decoded& decoded, const Frame& frame, int bus,
+                                         const SampleTrigger& moment) noexcept {
         BusWatch& watch = watch_[static_cast<std::size_t>(bus)];
         switch (decoded.kind) {
         case Decoded::Kind::values:
@@ -235,7 +236,7 @@ class SampleAssembly {
             watch.health.device_lost();
             break;
         case Decoded::Kind::sync:
-            return moment.kind == Moment::Kind::none ? moments_.synchronised(frame.stamp_ns) : moment;
+            return moment.kind == SampleTrigger::Kind::none ? moments_.synchronised(frame.stamp_ns) : moment;
         case Decoded::Kind::nothing:
         case Decoded::Kind::part:
         case Decoded::Kind::status:

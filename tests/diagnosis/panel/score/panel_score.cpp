@@ -89,8 +89,8 @@ FindingScore score_finding(const PanelCase& panel_case, const tools::Finding& fi
 
 std::vector<ConstantScore> score_constants(const PanelCase& panel_case, const tools::Diagnosis& diagnosis) {
     std::vector<ConstantScore> result;
-    for (const tools::GrantedQuantity& granted : diagnosis.granted) {
-        const tools::FoundParameter& found = granted.parameter;
+    for (const tools::NuisanceEstimate& nuisance : diagnosis.nuisance_estimates) {
+        const tools::FoundParameter& found = nuisance.parameter;
         if (found.name == "torque_constant") {
             const double truth = panel_case.torque_constants[result.size()];
             result.push_back({std::abs(found.value / truth - 1), found.low <= truth && truth <= found.high});

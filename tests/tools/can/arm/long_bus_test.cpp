@@ -6,8 +6,8 @@
 #include "tests/tools/can/bus_support.hpp"
 #include "tools/can/arm/bus_sampler.hpp"
 #include "tools/can/log/bus_traffic.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
 #include "tools/model/run_time/host_model.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 
 #include <chrono>
 #include <deque>
@@ -154,7 +154,7 @@ class Listener {
         return good;
     }
 
-    std::unique_ptr<HostEstimator> estimator_;
+    std::unique_ptr<RuntimeEstimator> estimator_;
     int lags_;
     std::int64_t gap_ns_;
     std::int64_t last_ns_ = 0;

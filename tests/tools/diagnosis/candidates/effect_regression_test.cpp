@@ -51,7 +51,7 @@ TEST_CASE("the degrees of freedom of a fit per bin are the diagonal of its hat m
     EffectRegression regression(rows, MatrixXd::Ones(measured.time_s.size(), 1), rows.frames());
     set_columns(regression, columns);
     const std::vector<Index> fitted{0, 1, 2, 3, 4, 5};
-    const MatrixXd covariance = inverse_matrix(regression.weighed_sums().gram);
+    const MatrixXd covariance = inverse_matrix(regression.weighted_sums().gram);
 
     MatrixXd spectral(rows.count(), 6);
     for (Index i = 0; i < 6; ++i) {
@@ -78,7 +78,7 @@ TEST_CASE("the noise estimate is unbiased in bins where many columns were fitted
     for (int trial = 0; trial < trials; ++trial) {
         EffectRegression regression(rows, white_noise(measured.time_s.size(), 1, engine), rows.frames());
         set_columns(regression, columns);
-        const WeighedSums sums = regression.weighed_sums();
+        const WeighedSums sums = regression.weighted_sums();
         const MatrixXd left = regression.residual(0, solve_symmetric(sums.gram, sums.moment));
         const VectorXd spent = regression.spent(0, fitted, inverse_matrix(sums.gram));
         // Bin 5 is the first bin above those in which persistence is estimated.

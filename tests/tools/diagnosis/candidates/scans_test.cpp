@@ -67,8 +67,8 @@ struct Residual {
         return result;
     }
 
-    MatrixXd weighed() const {
-        return weighed_residual_away_from_reversals(signals, regression(), VectorXd(0));
+    MatrixXd weighted() const {
+        return weighted_residual_away_from_reversals(signals, regression(), VectorXd(0));
     }
 };
 
@@ -79,10 +79,10 @@ TEST_CASE("slow noise alone yields no conspicuous push") {
     const Residual residual(engine);
     const std::vector<ContactSite> sites = contact_sites(residual.signals);
     for (const Candidate& push :
-         scan_contacts(residual.signals, residual.regression(), residual.weighed(), sites)) {
+         scan_contacts(residual.signals, residual.regression(), residual.weighted(), sites)) {
         INFO(push.where);
         // 1.5 times the fourth largest of several hundred squares of a standard normal variable.
-        CHECK(push.extra_price < 1.5 * 16);
+        CHECK(push.evidence_offset < 1.5 * 16);
     }
 }
 
@@ -93,13 +93,13 @@ TEST_CASE("a push in slow noise is found at its time and does not raise its own 
     residual.left.col(3) -= 8 * pulse_series(residual.signals, {start_s, start_s + 1.5, 0.4});
     const std::vector<ContactSite> sites = contact_sites(residual.signals);
     const std::vector<Candidate> pushes =
-        scan_contacts(residual.signals, residual.regression(), residual.weighed(), sites);
+        scan_contacts(residual.signals, residual.regression(), residual.weighted(), sites);
     const auto push = std::ranges::find(pushes, "joint4", &Candidate::where);
     REQUIRE(push != pushes.end());
     const std::vector<EffectParameter> found = push->parameters(VectorXd::Ones(1), push->shapes.front());
     CHECK(std::abs(found[0].value - start_s) < 0.5);
     CHECK(std::abs(found[1].value - start_s - 1.5) < 0.5);
-    CHECK(push->extra_price < 1.5 * 16);
+    CHECK(push->evidence_offset < 1.5 * 16);
 }
 
 TEST_CASE("a late payload must explain more than loads of short duration would") {
@@ -109,8 +109,8 @@ TEST_CASE("a late payload must explain more than loads of short duration would")
     const double taken_s = residual.signals.measured.time_s.tail(1)[0] - 1.5;
     const auto demanded = [&] {
         const EffectRegression regression = residual.regression();
-        const MatrixXd weighed = weighed_residual(regression, VectorXd(0));
-        return demanded_of_payload(residual.signals, regression, weighed, payload, taken_s);
+        const MatrixXd weighted = weighted_residual(regression, VectorXd(0));
+        return payload_evidence_threshold(residual.signals, regression, weighted, payload, taken_s);
     };
     // 1.5 times the fourth largest of a hundred sums of four squares of a standard normal variable.
     CHECK(demanded() < 1.5 * 15);
@@ -140,22 +140,22 @@ TEST_CASE("the threshold of an early payload is zero because no windows remain f
     DFDYN_SEEDED_ENGINE(engine);
     const Residual residual(engine);
     const EffectRegression regression = residual.regression();
-    CHECK(demanded_of_payload(residual.signals, regression, weighed_residual(regression, VectorXd(0)),
-                              payload_columns(residual.signals), 8) == 0);
+    CHECK(payload_evidence_threshold(residual.signals, regression, weighted_residual(regression, VectorXd(0)),
+                                     payload_columns(residual.signals), 8) == 0);
 }
 
 TEST_CASE("a residual that occurs only at reversals is interpolated") {
     DFDYN_SEEDED_ENGINE(engine);
     Residual residual(engine);
     const VectorXd velocity = residual.signals.measured.motion.velocity.col(0);
-    const MatrixXd bridged = residual.weighed();
-    const MatrixXd all = weighed_residual(residual.regression(), VectorXd(0));
+    const MatrixXd bridged = residual.weighted();
+    const MatrixXd all = weighted_residual(residual.regression(), VectorXd(0));
     const VectorXd bump = 5 * (std::numbers::pi * VectorXd::LinSpaced(17, -1, 1).array() / 2).cos().square();
     for (Index row = 8; row + 9 < velocity.size(); ++row) {
         if ((velocity[row] > 0) != (velocity[row - 1] > 0)) {
             residual.left.col(0).segment(row - 8, 17) += bump;
         }
     }
-    const MatrixXd more = weighed_residual(residual.regression(), VectorXd(0)) - all;
-    CHECK((residual.weighed() - bridged).norm() < 0.1 * more.norm());
+    const MatrixXd more = weighted_residual(residual.regression(), VectorXd(0)) - all;
+    CHECK((residual.weighted() - bridged).norm() < 0.1 * more.norm());
 }

@@ -49,7 +49,7 @@ MeasuredMotion swinging(const Robot& robot, std::mt19937_64& engine) {
 }
 
 /// Outputs of the extended model along a motion, computed by the firmware's columns.
-MatrixXd outputs_of(const Extension& extension, const RobotMotion& motion) {
+MatrixXd outputs_of(const ModelExtension& extension, const RobotMotion& motion) {
     std::vector<EffectModel> effects;
     VectorXd parameters(extension.bodies.size() + static_cast<Index>(extension.columns.size()));
     parameters.head(extension.bodies.size()) = extension.bodies;
@@ -76,10 +76,11 @@ DiagnosisWork work_with(const std::shared_ptr<const DiagnosisSignals>& signals, 
     DiagnosisWork work;
     work.signals = signals;
     work.torque_gains = VectorXd::Ones(signals->outputs());
-    work.explanation.candidates = {candidate};
-    work.explanation.chosen = {{0, shape}};
-    work.explanation.values.coefficients = coefficients;
-    work.explanation.values.covariance = 1e-12 * MatrixXd::Identity(coefficients.size(), coefficients.size());
+    work.fitted_effects.candidates = {candidate};
+    work.fitted_effects.chosen = {{0, shape}};
+    work.fitted_effects.values.coefficients = coefficients;
+    work.fitted_effects.values.covariance =
+        1e-12 * MatrixXd::Identity(coefficients.size(), coefficients.size());
     return work;
 }
 
@@ -134,9 +135,9 @@ std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignal
             if (candidate.effect == "payload" && coefficients.size() == 4) {
                 coefficients.tail<3>() *= 0.01; // metres: a centimetre from the tip
             }
-            const Extension extension = extension_of(work_with(signals, candidate, shape, coefficients));
-            const CarriedFinding::How how = extension.carried.front().how;
-            if ((how != CarriedFinding::How::adapting && how != CarriedFinding::How::fixed) ||
+            const ModelExtension extension = extension_of(work_with(signals, candidate, shape, coefficients));
+            const ExtendedFinding::How how = extension.carried.front().how;
+            if ((how != ExtendedFinding::How::adapting && how != ExtendedFinding::How::fixed) ||
                 !carried_exactly(candidate, shape)) {
                 continue;
             }
@@ -204,14 +205,14 @@ TEST_CASE("columns of the same effect at the same place are merged into one") {
     for (const Candidate& candidate : lasting_candidates(signals)) {
         if (candidate.where == "joint2" &&
             (candidate.effect == "joint_spring" || candidate.effect == "torque_offset")) {
-            work.explanation.chosen.push_back({work.explanation.candidates.size(), 0});
-            work.explanation.candidates.push_back(candidate);
+            work.fitted_effects.chosen.push_back({work.fitted_effects.candidates.size(), 0});
+            work.fitted_effects.candidates.push_back(candidate);
         }
     }
-    work.explanation.values.coefficients =
+    work.fitted_effects.values.coefficients =
         VectorXd::LinSpaced(3, 1, 3); // the spring's stiffness and offset, then the torque offset
-    work.explanation.values.covariance = MatrixXd::Identity(3, 3);
-    const Extension extension = extension_of(work);
+    work.fitted_effects.values.covariance = MatrixXd::Identity(3, 3);
+    const ModelExtension extension = extension_of(work);
     REQUIRE(extension.columns.size() == 2);
     CHECK(extension.columns[0].effect.name == "joint_spring");
     CHECK(extension.columns[0].value == 1);
@@ -219,7 +220,7 @@ TEST_CASE("columns of the same effect at the same place are merged into one") {
     CHECK(extension.columns[1].effect.row == 1);
     CHECK(extension.columns[1].value == 5);
     CHECK(extension.columns[1].deviation == Approx(std::sqrt(2.0)));
-    const Extension names = names_only(work, extension);
+    const ModelExtension names = names_only(work, extension);
     CHECK(names.columns[1].value == 0);
     CHECK(names.columns[1].deviation == 5);
 }
@@ -235,16 +236,17 @@ TEST_CASE("the corrected robot has the extended model's torques and names what i
     std::vector<double> coefficients;
     for (const Candidate& candidate : lasting_candidates(signals)) {
         if (const auto found = hidden.find(candidate.key()); found != hidden.end()) {
-            work.explanation.chosen.push_back({work.explanation.candidates.size(), found->second.first});
-            work.explanation.candidates.push_back(candidate);
+            work.fitted_effects.chosen.push_back(
+                {work.fitted_effects.candidates.size(), found->second.first});
+            work.fitted_effects.candidates.push_back(candidate);
             coefficients.push_back(found->second.second);
         }
     }
     REQUIRE(coefficients.size() == hidden.size());
     const auto count = static_cast<Index>(coefficients.size());
-    work.explanation.values.coefficients = Eigen::Map<const VectorXd>(coefficients.data(), count);
-    work.explanation.values.covariance = MatrixXd::Identity(count, count);
-    const Extension extension = extension_of(work);
+    work.fitted_effects.values.coefficients = Eigen::Map<const VectorXd>(coefficients.data(), count);
+    work.fitted_effects.values.covariance = MatrixXd::Identity(count, count);
+    const ModelExtension extension = extension_of(work);
     const RobotExport corrected = corrected_robot(extension);
     CHECK(corrected.left_out == std::vector<std::string>{"torque_offset at joint4"});
     const ArmDynamics dynamics(corrected.robot, JointVector::Zero(6));

@@ -36,7 +36,7 @@ SearchProblem problem_of(const MatrixXd& columns, const VectorXd& target) {
     for (Index column = 0; column < columns.cols(); ++column) {
         SearchCandidate candidate;
         candidate.shapes.push_back({{column}, anything});
-        candidate.rivals = static_cast<double>(columns.cols());
+        candidate.candidates_of_class = static_cast<double>(columns.cols());
         problem.candidates.push_back(candidate);
     }
     return problem;

@@ -3,7 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/diagnosis/small_explanation.hpp"
+#include "tests/tools/diagnosis/small_fitted_effects.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,10 +49,10 @@ struct SwingingJoint {
     }
 
     /// The model of effects with these columns, all of them chosen, after make_robust().
-    Explanation explained(const VectorXd& torque, const std::vector<VectorXd>& effects) const {
+    FittedEffects explained(const VectorXd& torque, const std::vector<VectorXd>& effects) const {
         EffectRegression regression(rows, torque, rows.frames());
         std::vector<SpectralColumnPointer> columns;
-        Explanation result;
+        FittedEffects result;
         for (const VectorXd& series : effects) {
             const auto number = result.candidates.size();
             result.candidates.push_back(of_one_column(numbered("effect", number), "joint1", series));
@@ -64,7 +64,7 @@ struct SwingingJoint {
         regression.set_columns(columns);
         result.noise = of_noise;
         regression.set_noise(result.noise, {MatrixXd::Ones(rows.bins(), rows.frames())});
-        result.problem.sums = regression.weighed_sums();
+        result.problem.sums = regression.weighted_sums();
         result.fit = fit_effects(result.problem, result.chosen);
         result.named = result.fit;
         make_robust(result, regression);
@@ -104,7 +104,7 @@ TEST_CASE("dry friction that builds up after a reversal keeps its level and gets
     VectorXd by_noise(trials), values(trials);
     int with_load = 0;
     for (int trial = 0; trial < trials; ++trial) {
-        const Explanation found =
+        const FittedEffects found =
             joint.explained(friction + joint.noise(engine), {joint.direction, joint.velocity, by_load});
         REQUIRE(std::ranges::find(found.chosen, 0U, &ChosenShape::candidate) != found.chosen.end());
         by_noise[trial] = found.named.coefficients[0];

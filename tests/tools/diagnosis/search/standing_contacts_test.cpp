@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pushes at a joint at rest, hidden among the changes of its static friction.
-#include "tools/diagnosis/search/standing_contacts.hpp"
+#include "tools/diagnosis/search/stationary_contacts.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/diagnosis/small_explanation.hpp"
+#include "tests/tools/diagnosis/small_fitted_effects.hpp"
 #include "tests/tools/robot/arms.hpp"
 
 #include <algorithm>
@@ -42,14 +42,14 @@ Candidate friction_cause(const DiagnosisSignals& signals, const std::string& par
     return candidate;
 }
 
-Explanation with_friction(const DiagnosisSignals& signals, const std::string& parameter) {
-    return explanation_of({friction_cause(signals, parameter)}, 1, friction * signals.direction(0));
+FittedEffects with_friction(const DiagnosisSignals& signals, const std::string& parameter) {
+    return fitted_effects_of({friction_cause(signals, parameter)}, 1, friction * signals.direction(0));
 }
 
-std::vector<StandingContact> pushes_in(const DiagnosisSignals& signals, const Explanation& explanation,
-                                       const MatrixXd& measured) {
-    return standing_contacts(signals, explanation, measured,
-                             measured - signals.nominal - explanation.all(signals));
+std::vector<StationaryContact> pushes_in(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
+                                         const MatrixXd& measured) {
+    return standing_contacts(signals, fitted_effects, measured,
+                             measured - signals.nominal - fitted_effects.all(signals));
 }
 
 /// Torques of a joint that rests undisturbed: it creeps, and its friction yields in both directions.
@@ -77,7 +77,7 @@ TEST_CASE("a torque that friction can hold at rest is not a push") {
     const auto most_likely = [&](double times) {
         const MatrixXd louder = signals.nominal + times * (measured - signals.nominal);
         double most = 0;
-        for (const StandingContact& push : pushes_in(signals, with_friction(signals, "coulomb"), louder)) {
+        for (const StationaryContact& push : pushes_in(signals, with_friction(signals, "coulomb"), louder)) {
             most = std::max(most, push.probability());
         }
         return most;
@@ -94,9 +94,9 @@ TEST_CASE("a push larger than friction is found at a joint at rest with its time
     const ContactPulse pulse{start_s, start_s + 0.75, 0.2};
     MatrixXd measured = resting(signals, engine);
     measured.col(0) += change * pulse_series(signals, pulse);
-    const std::vector<StandingContact> pushes =
+    const std::vector<StationaryContact> pushes =
         pushes_in(signals, with_friction(signals, "coulomb"), measured);
-    const auto found = std::ranges::max_element(pushes, {}, &StandingContact::probability);
+    const auto found = std::ranges::max_element(pushes, {}, &StationaryContact::probability);
     REQUIRE(found != pushes.end());
     CHECK(found->joint == 0);
     CHECK(found->probability() > 0.99);
@@ -116,7 +116,7 @@ TEST_CASE("a joint that moves or whose dry friction is unknown is never reported
     CHECK(pushes_in(signals, with_friction(signals, "viscous"), measured).empty());
     const auto pushes = pushes_in(signals, with_friction(signals, "coulomb"), measured);
     REQUIRE_FALSE(pushes.empty());
-    CHECK(std::ranges::all_of(pushes, [](const StandingContact& push) { return push.joint == 0; }));
+    CHECK(std::ranges::all_of(pushes, [](const StationaryContact& push) { return push.joint == 0; }));
     signals.measured.weight.setOnes();
     CHECK(pushes_in(signals, with_friction(signals, "coulomb"), measured).empty());
 }
@@ -126,18 +126,18 @@ TEST_CASE("no push at rest is reported if the friction estimate is uncertain") {
     const DiagnosisSignals signals = standing_arm();
     MatrixXd measured = resting(signals, engine);
     measured.col(0) += 30 * pulse_series(signals, {8, 8.75, 0.2});
-    Explanation explanation = with_friction(signals, "coulomb");
-    CHECK_FALSE(pushes_in(signals, explanation, measured).empty());
+    FittedEffects fitted_effects = with_friction(signals, "coulomb");
+    CHECK_FALSE(pushes_in(signals, fitted_effects, measured).empty());
     constexpr double precision = 1e-3; // as a share of all measurements
-    explanation.problem.sums.gram *= precision;
-    explanation.problem.sums.moment *= precision;
-    explanation.named = fit_effects(explanation.problem, explanation.named_effects());
-    explanation.values = explanation.named;
-    CHECK(pushes_in(signals, explanation, measured).empty());
+    fitted_effects.problem.sums.gram *= precision;
+    fitted_effects.problem.sums.moment *= precision;
+    fitted_effects.named = fit_effects(fitted_effects.problem, fitted_effects.named_effects());
+    fitted_effects.values = fitted_effects.named;
+    CHECK(pushes_in(signals, fitted_effects, measured).empty());
 }
 
 TEST_CASE("a push as large as static friction has a probability of one half") {
-    StandingContact push;
+    StationaryContact push;
     push.change = -10;
     push.held = 10;
     push.change_deviation = 3;
@@ -151,12 +151,12 @@ TEST_CASE("a torque that a cause predicts at rest but nobody measured is not a p
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = standing_arm();
     const VectorXd said = pulse_series(signals, {8, 8.75, 0.2});
-    const Explanation explanation =
-        explanation_of({friction_cause(signals, "coulomb"), of_one_column("payload", "tool", said)}, 2,
-                       friction * signals.direction(0) + 30 * said);
+    const FittedEffects fitted_effects =
+        fitted_effects_of({friction_cause(signals, "coulomb"), of_one_column("payload", "tool", said)}, 2,
+                          friction * signals.direction(0) + 30 * said);
     const auto likely = [&](const MatrixXd& measured) {
-        return std::ranges::any_of(pushes_in(signals, explanation, measured),
-                                   [](const StandingContact& push) { return push.probability() > 0.5; });
+        return std::ranges::any_of(pushes_in(signals, fitted_effects, measured),
+                                   [](const StationaryContact& push) { return push.probability() > 0.5; });
     };
     MatrixXd measured = resting(signals, engine);
     CHECK_FALSE(likely(measured));
@@ -173,7 +173,7 @@ TEST_CASE("a change of load across a gap of the recording is not a push") {
     measured.col(0).segment(first, count).array() += 40;
     const auto likely = [&] {
         return std::ranges::any_of(pushes_in(signals, with_friction(signals, "coulomb"), measured),
-                                   [](const StandingContact& push) { return push.probability() > 0.5; });
+                                   [](const StationaryContact& push) { return push.probability() > 0.5; });
     };
     CHECK(likely());
     signals.measured.stretches = {

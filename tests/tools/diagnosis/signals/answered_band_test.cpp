@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/signals/answered_band.hpp"
+#include "tools/diagnosis/signals/response_bandwidth.hpp"
 
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"

@@ -77,9 +77,9 @@ TEST_CASE("a burst raises the noise level of its own frames only") {
     noise.segment(2000, 100) *= 8;
     const LappedTransform transform(100, 60);
     const MatrixXd coefficients = transform.analyse(noise);
-    const MatrixXd unrest =
-        noise_unrest(coefficients, RowVectorXd::Ones(coefficients.cols()), VectorXd::Ones(60));
-    CHECK(unrest.col(20).minCoeff() > 5);
-    CHECK(unrest.leftCols(18).maxCoeff() < 3);
-    CHECK(unrest.rightCols(16).maxCoeff() < 3);
+    const MatrixXd noise_scale =
+        local_noise_scale(coefficients, RowVectorXd::Ones(coefficients.cols()), VectorXd::Ones(60));
+    CHECK(noise_scale.col(20).minCoeff() > 5);
+    CHECK(noise_scale.leftCols(18).maxCoeff() < 3);
+    CHECK(noise_scale.rightCols(16).maxCoeff() < 3);
 }

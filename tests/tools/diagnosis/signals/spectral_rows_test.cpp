@@ -63,12 +63,13 @@ TEST_CASE("rows without weight do not reduce the noise estimate") {
     CHECK(rows.filled(0).sum() * SpectralRows::hop_s == Approx(20 - 6 - 0.75 * 3));
     std::normal_distribution<double> normal;
     VectorXd spectrum = VectorXd::Zero(rows.bins());
-    MatrixXd unrest;
+    MatrixXd noise_scale;
     for (int trial = 0; trial < 20; ++trial) {
         const VectorXd noise = VectorXd::NullaryExpr(2000, [&](Index) { return 0.3 * normal(engine); });
         spectrum += noise_spectrum(rows.analyse(noise, 0), rows.filled(0), VectorXd::Zero(rows.bins())) / 20;
-        unrest = noise_unrest(rows.analyse(noise, 0), rows.filled(0), VectorXd::Constant(rows.bins(), 0.09));
-        CHECK(unrest.minCoeff() > 0.5);
+        noise_scale =
+            local_noise_scale(rows.analyse(noise, 0), rows.filled(0), VectorXd::Constant(rows.bins(), 0.09));
+        CHECK(noise_scale.minCoeff() > 0.5);
     }
     CHECK(spectrum.tail(rows.bins() - 4).mean() ==
           Approx(0.09).epsilon(0.05)); // the slowest bins are treated as persistent noise

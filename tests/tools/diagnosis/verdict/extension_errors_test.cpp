@@ -3,7 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/diagnosis/small_explanation.hpp"
+#include "tests/tools/diagnosis/small_fitted_effects.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/base/numerics/root_mean_square.hpp"
 
@@ -41,10 +41,10 @@ TEST_CASE("errors are reported over all rows and over the rows in which a joint 
     missed.tail(standing) /= 2;
     work.measured = signals->nominal;
     work.measured.col(0) += missed;
-    const Explanation explanation =
-        explanation_of({of_one_column("coulomb_friction", "joint1", cause)}, 1, 3 * cause);
+    const FittedEffects fitted_effects =
+        fitted_effects_of({of_one_column("coulomb_friction", "joint1", cause)}, 1, 3 * cause);
 
-    measure_from(work, rows / 2, explanation);
+    measure_from(work, rows / 2, fitted_effects);
 
     const Index count = rows - rows / 2;
     const Index moving = count - standing;

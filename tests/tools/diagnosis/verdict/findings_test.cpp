@@ -3,7 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/diagnosis/small_explanation.hpp"
+#include "tests/tools/diagnosis/small_fitted_effects.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/base/numerics/root_mean_square.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
@@ -23,19 +23,19 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Findings for a recording whose first torque is the rigid body's plus `unexplained`.
-std::vector<Finding> found(const DiagnosisSignals& signals, const Explanation& explanation,
+std::vector<Finding> found(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
                            const VectorXd& unexplained) {
-    MatrixXd rest = -explanation.all(signals);
+    MatrixXd rest = -fitted_effects.all(signals);
     rest.col(0) += unexplained;
-    return findings_of(signals, explanation, {}, rest, std::vector<std::string>(6, "tau"));
+    return findings_of(signals, fitted_effects, {}, rest, std::vector<std::string>(6, "tau"));
 }
 
 /// One cause on the first joint with one coefficient and two possible shapes, the first of them chosen.
-Explanation of_two_shapes(const VectorXd& first, const VectorXd& second, const VectorXd& unexplained) {
+FittedEffects of_two_shapes(const VectorXd& first, const VectorXd& second, const VectorXd& unexplained) {
     Candidate cause = of_one_column("presliding_hysteresis", "joint1", first);
     cause.columns.push_back(on_output(0, second));
     cause.shapes = {{{0}, is_anything, 1}, {{1}, is_anything, 2}};
-    return explanation_of({cause}, 1, unexplained);
+    return fitted_effects_of({cause}, 1, unexplained);
 }
 
 TEST_CASE("the interval of a parameter contains the uncertainty of its shape") {
@@ -73,9 +73,9 @@ TEST_CASE("confidence drops if an unnamed column cancels the cause") {
     const auto confidence = [&](const std::vector<std::string>& inputs) {
         Candidate against = of_one_column("viscous_friction", "joint1", nearly);
         against.inputs = inputs;
-        const Explanation explanation = explanation_of({friction, against}, 2, unexplained);
-        REQUIRE(explanation.fit.score > 100);
-        const auto findings = found(signals, explanation, unexplained);
+        const FittedEffects fitted_effects = fitted_effects_of({friction, against}, 2, unexplained);
+        REQUIRE(fitted_effects.fit.score > 100);
+        const auto findings = found(signals, fitted_effects, unexplained);
         const auto cause_found = std::ranges::find(findings, friction.effect, &Finding::effect);
         REQUIRE(cause_found != findings.end());
         return cause_found->confidence;
@@ -94,7 +94,7 @@ TEST_CASE("payload and last link are one cause unless their columns differ by mo
         Candidate payload = of_one_column("payload", "tool", body);
         Candidate link = of_one_column("link_inertia_error", "link6", body + std::sqrt(share) * shape);
         payload.span = link.span = span;
-        const auto findings = found(signals, explanation_of({payload, link}, 1, unexplained), unexplained);
+        const auto findings = found(signals, fitted_effects_of({payload, link}, 1, unexplained), unexplained);
         REQUIRE(findings.size() == 1);
         return findings.front().indistinguishable.size();
     };
@@ -108,9 +108,10 @@ TEST_CASE("an unexplained residual above 5 Hz does not change the gain of a find
     const VectorXd slow = (0.5 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
     const VectorXd fast = (30 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
     // The weighted fit contains only the slow part.
-    Explanation explanation = explanation_of({of_one_column("backlash", "joint1", slow)}, 1, 2 * slow);
-    explanation.candidates.front().columns.front() = on_output(0, slow + fast);
-    const auto findings = found(signals, explanation, 2 * slow - 3 * fast);
+    FittedEffects fitted_effects =
+        fitted_effects_of({of_one_column("backlash", "joint1", slow)}, 1, 2 * slow);
+    fitted_effects.candidates.front().columns.front() = on_output(0, slow + fast);
+    const auto findings = found(signals, fitted_effects, 2 * slow - 3 * fast);
     REQUIRE(findings.size() == 1);
     CHECK(findings.front().rms_before == Approx(2 * root_mean_square(slow)).epsilon(0.02));
     CHECK(findings.front().rms_after < 0.2 * findings.front().rms_before);
@@ -124,7 +125,7 @@ TEST_CASE("the gain of a cause that acts only above 5 Hz is measured there") {
     REQUIRE(leak.norm() < 0.1 * fast.norm());
     // The residual below 5 Hz happens to cancel the small part that the cause has there.
     const auto findings =
-        found(signals, explanation_of({of_one_column("torque_ripple", "joint1", fast)}, 1, 2 * fast),
+        found(signals, fitted_effects_of({of_one_column("torque_ripple", "joint1", fast)}, 1, 2 * fast),
               2 * fast - leak);
     REQUIRE(findings.size() == 1);
     CHECK(findings.front().rms_before == Approx(2 * root_mean_square(fast)).epsilon(0.1));
@@ -132,7 +133,7 @@ TEST_CASE("the gain of a cause that acts only above 5 Hz is measured there") {
 
 TEST_CASE("a push at a joint at rest is reported with its force and the share that friction can hold") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    StandingContact push;
+    StationaryContact push;
     push.joint = 2;
     push.pulse = {8, 9, 0.3};
     push.change = 30;
@@ -142,7 +143,7 @@ TEST_CASE("a push at a joint at rest is reported with its force and the share th
     push.share = 30 * pulse_series(signals, push.pulse);
     const MatrixXd rest = MatrixXd::Constant(signals.rows(), 6, 0.1);
     const std::vector<Finding> findings =
-        findings_of(signals, explanation_of({}, 0, VectorXd::Zero(signals.rows())), {push}, rest,
+        findings_of(signals, fitted_effects_of({}, 0, VectorXd::Zero(signals.rows())), {push}, rest,
                     {"tau1", "tau2", "tau3", "tau4", "tau5", "tau6"});
     REQUIRE(findings.size() == 1);
     const Finding& finding = findings.front();

@@ -4,7 +4,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/diagnosis/small_explanation.hpp"
+#include "tests/tools/diagnosis/small_fitted_effects.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/diagnosis/verdict/textbook.hpp"
 
@@ -47,7 +47,7 @@ DiagnosisWork work_with_friction(std::mt19937_64& engine, double noise) {
     work.measured.col(0) += viscous * signals->measured.motion.velocity.col(0) + dry * signals->direction(0) +
                             slow_noise(signals->rows(), noise, engine);
     work.rest = work.measured - signals->nominal;
-    work.explanation = explanation_of({}, 0, random_series(*signals, engine));
+    work.fitted_effects = fitted_effects_of({}, 0, random_series(*signals, engine));
     work.diagnosis.output_names = {"tau1", "tau2", "tau3", "tau4", "tau5", "tau6"};
     work.diagnosis.by_least_squares = {true, false, false, false, false, false};
     return work;

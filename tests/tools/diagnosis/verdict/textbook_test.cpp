@@ -4,7 +4,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/diagnosis/small_explanation.hpp"
+#include "tests/tools/diagnosis/small_fitted_effects.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/diagnosis/verdict/extension_errors.hpp"
 #include "tools/diagnosis/verdict/findings.hpp"
@@ -50,10 +50,10 @@ TEST_CASE("plain least squares replaces causes that err more, and the diagnosis 
     work.measured.col(1) += random_series(*signals, engine);
     work.diagnosis.output_names = {"tau1", "tau2", "tau3", "tau4", "tau5", "tau6"};
     const VectorXd noise = random_series(*signals, engine);
-    const Explanation explanation =
-        explanation_of({of_one_column("coulomb_friction", "joint1", noise)}, 1, noise);
+    const FittedEffects fitted_effects =
+        fitted_effects_of({of_one_column("coulomb_friction", "joint1", noise)}, 1, noise);
 
-    measure_from(work, signals->rows() / 2, explanation);
+    measure_from(work, signals->rows() / 2, fitted_effects);
 
     const Diagnosis& diagnosis = work.diagnosis;
     CHECK(diagnosis.by_least_squares[0]);

@@ -6,7 +6,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
-#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/training/train.hpp"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "dfdyn/hal/gate/bus_health.hpp"
 #include "dfdyn/hal/gate/clock.hpp"
-#include "dfdyn/hal/gate/offenders.hpp"
+#include "dfdyn/hal/gate/unexpected_frames.hpp"
 
 namespace dfdyn::hal {
 
@@ -13,9 +13,9 @@ struct BusWatch {
 
     ClockGate clock;
     BusHealth health;
-    Offenders unknown;     ///< on identifiers of no known device
-    Offenders rejected;    ///< on known identifiers, but of another form
-    std::uint64_t own = 0; ///< our own frames, which the socket returns: ignored
+    UnexpectedFrames unknown;  ///< on identifiers of no known device
+    UnexpectedFrames rejected; ///< on known identifiers, but of another form
+    std::uint64_t own = 0;     ///< our own frames, which the socket returns: ignored
     std::uint64_t from_host =
         0; ///< from another program of this host: a simulation, or a replay on a live bus
 

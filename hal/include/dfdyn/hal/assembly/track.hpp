@@ -3,16 +3,16 @@
 
 #include "dfdyn/hal/assembly/history.hpp"
 #include "dfdyn/hal/gate/gap.hpp"
-#include "dfdyn/hal/gate/qualification.hpp"
 #include "dfdyn/hal/gate/range.hpp"
 #include "dfdyn/hal/gate/staleness.hpp"
+#include "dfdyn/hal/gate/startup.hpp"
 
 namespace dfdyn::hal {
 
 struct TrackConfig {
     std::int64_t max_age_ns; ///< for how long a value is held; neighbours further apart are a gap
     std::int64_t latency_ns; ///< from the measurement to the stamp of its frame
-    QualificationGate::Config qualification;
+    StartupGate::Config qualification;
     std::int64_t period_ns = 0; ///< in which a source sends; 0: not known, so that nothing is ever missing
     std::int64_t jitter_ns = 0; ///< largest difference of the lateness of two frames
 };
@@ -138,7 +138,7 @@ class Track {
     [[nodiscard]] constexpr const StalenessGate& staleness() const noexcept { return staleness_; }
     [[nodiscard]] constexpr const GapGate& gap() const noexcept { return gap_; }
     [[nodiscard]] constexpr const RangeGate<values>& range() const noexcept { return range_; }
-    [[nodiscard]] constexpr const QualificationGate& qualification() const noexcept { return qualification_; }
+    [[nodiscard]] constexpr const StartupGate& qualification() const noexcept { return qualification_; }
 
     /// Readings that came with a stamp not later than the last.
     [[nodiscard]] constexpr std::uint64_t not_later() const noexcept { return not_later_; }
@@ -194,7 +194,7 @@ class Track {
     StalenessGate staleness_;
     GapGate gap_;
     RangeGate<values> range_;
-    QualificationGate qualification_;
+    StartupGate qualification_;
     History<values, capacity> history_;
     std::uint64_t not_later_ = 0;
 };

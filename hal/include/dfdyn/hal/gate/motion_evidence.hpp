@@ -2,8 +2,8 @@
 #pragma once
 
 #include "dfdyn/hal/gate/candidate_run.hpp"
-#include "dfdyn/hal/gate/qualification.hpp"
 #include "dfdyn/hal/gate/range.hpp"
+#include "dfdyn/hal/gate/startup.hpp"
 #include "dfdyn/hal/gate/zero_watch.hpp"
 
 #include <algorithm>
@@ -19,12 +19,12 @@ class MotionEvidence {
   public:
     /// Limits and times of a joint.
     struct Config {
-        MotionLimits limits;                     ///< of the joint
-        Range range{-7, 7};                      ///< rad
-        std::int64_t max_age_ns = 0;             ///< for how long a reading is of use
-        std::int64_t period_ns = 0;              ///< of the readings; 0: not known
-        std::int64_t jitter_ns = 0;              ///< largest lateness of a stamp against another one
-        QualificationGate::Config qualification; ///< how many readings are needed
+        MotionLimits limits;               ///< of the joint
+        Range range{-7, 7};                ///< rad
+        std::int64_t max_age_ns = 0;       ///< for how long a reading is of use
+        std::int64_t period_ns = 0;        ///< of the readings; 0: not known
+        std::int64_t jitter_ns = 0;        ///< largest lateness of a stamp against another one
+        StartupGate::Config qualification; ///< how many readings are needed
     };
 
   protected:

@@ -60,7 +60,7 @@ class PairGate {
     [[nodiscard]] constexpr std::uint64_t pairs() const noexcept { return pairs_; }
 
     /// How many first (0) or second (1) halves never found the other.
-    [[nodiscard]] constexpr std::uint64_t orphans(int part) const noexcept {
+    [[nodiscard]] constexpr std::uint64_t unpaired(int part) const noexcept {
         return orphans_[static_cast<std::size_t>(part)];
     }
 

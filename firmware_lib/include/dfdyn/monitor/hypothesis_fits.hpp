@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/monitor/block_noise.hpp"
+#include "dfdyn/monitor/hypothesis_fit.hpp"
+#include "dfdyn/monitor/output_block.hpp"
+
+namespace dfdyn {
+
+/// Fits every cause of a change to the residuals since its onset.
+///
+/// The residuals are those of a prediction that does not learn the change. Their noise is estimated while no
+/// change is on (`BlockNoise`). Residuals and columns pass through the same whitening filter (D. Cochrane and
+/// G. H. Orcutt, 1949). Columns are scaled to the noise, so that all have the same prior.
+///
+/// Cost per block while fitting: `cost(m)`.
+template <class Scalar, int m>
+class HypothesisFits {
+  public:
+    using Block = OutputBlock<Scalar>;
+    using Speed = SpeedClasses<Scalar>;
+    template <int p, bool forgets>
+    using OfOutput = HypothesisFit<Scalar, p, 1, forgets>;
+
+    explicit HypothesisFits(Extent<m> outputs) noexcept
+        : nothing(outputs), payload(outputs), force(outputs),
+          friction(Storage<OfOutput<friction_columns, false>, m>::zeros(outputs)),
+          bias(Storage<OfOutput<1, false>, m>::zeros(outputs)),
+          push(Storage<OfOutput<1, true>, m>::zeros(outputs)), outputs_(outputs),
+          noise_(Storage<BlockNoise<Scalar>, m>::zeros(outputs)),
+          whitening_(Storage<Whitening<Scalar>, m>::zeros(outputs)),
+          targets_(Storage<Scalar, m>::zeros(outputs)),
+          rows_(Rows::zeros(extent<product(m, payload_columns)>(outputs * payload_columns))) {}
+
+    /// Adds a block while no change is on, and the one before it (null after a gap), to the noise estimates.
+    void learn(const Block* now, const Block* before, const Speed& speed) noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            const Block& other = before == nullptr ? now[k] : before[k];
+            const int last = before == nullptr ? -1 : speed.of(other.speed);
+            noise_[k].learn(now[k].residual, other.residual, speed.of(now[k].speed), last);
+        }
+    }
+    /// Learns the noise again, starting from the present estimates.
+    void relearn() noexcept {
+        for (BlockNoise<Scalar>& noise : noise_) {
+            noise.relearn();
+        }
+    }
+
+    /// Starts the fits. `block_at(b)`, 0 ≤ b < `count`: the stored blocks, which scale the columns.
+    template <class BlockAt>
+    void start(const BlockAt& block_at, int count) noexcept {
+        scale_columns(block_at, count);
+        nothing.restart();
+        payload.restart();
+        force.restart();
+        for (int k = 0; k < outputs_; ++k) {
+            friction[k].restart();
+            bias[k].restart();
+            push[k].restart();
+        }
+    }
+
+    /// Multiply-adds of `start`, at most.
+    static constexpr std::int64_t cost_of_start(int outputs, int count) noexcept {
+        constexpr int columns = payload_columns + force_columns;
+        return std::int64_t{outputs} * (function_cost + 2 + 2 * columns * std::int64_t{count}) +
+               columns * (function_cost + 1);
+    }
+
+    /// Adds a block since the onset, and the one before it.
+    void add(const Block* now, const Block* before, const Speed& speed) noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            const Whitening<Scalar> whitening = whitening_of(k, now, before, speed);
+            const Scalar scale = unit(k);
+            whitening_[k] = whitening;
+            targets_[k] = whitening.of(now[k].residual, before[k].residual);
+            nothing.add(k, targets_[k], 1);
+            const Scalar constant = scale * whitening.of(1, 1);
+            bias[k].add(&constant, &targets_[k]);
+            push[k].add(&constant, &targets_[k]);
+            const Scalar rubbing[friction_columns] = {
+                scale * whitening.of(now[k].friction[0], before[k].friction[0]),
+                scale * whitening.of(now[k].friction[1], before[k].friction[1])};
+            friction[k].add(rubbing, &targets_[k]);
+        }
+        add_shared(payload, payload_scale, &Block::payload, now, before);
+        add_shared(force, force_scale, &Block::force, now, before);
+    }
+
+    /// Returns the largest whitened residual of a block, in standard deviations.
+    [[nodiscard]] Scalar largest(const Block* now, const Block* before, const Speed& speed) const noexcept {
+        Scalar most = 0;
+        for (int k = 0; k < outputs_; ++k) {
+            using std::abs;
+            const Scalar one =
+                abs(whitening_of(k, now, before, speed).of(now[k].residual, before[k].residual));
+            most = std::max(most, one);
+        }
+        return most;
+    }
+
+    [[nodiscard]] const BlockNoise<Scalar>& noise(int output) const noexcept { return noise_[output]; }
+    /// Returns the unit of the parameters of a bias, a friction or a push, in output units.
+    [[nodiscard]] Scalar unit(int output) const noexcept { return noise_[output].smallest(); }
+
+    /// Multiply-adds of `add`, at most.
+    static constexpr std::int64_t cost(int outputs) noexcept {
+        const std::int64_t own = OfOutput<1, false>::cost(1) + OfOutput<1, true>::cost(1) +
+                                 OfOutput<friction_columns, false>::cost(1);
+        return outputs * (own + Evidence<Scalar, m>::cost + 4 * function_cost + 60) +
+               HypothesisFit<Scalar, payload_columns, m, false>::cost(outputs) +
+               HypothesisFit<Scalar, force_columns, m, true>::cost(outputs);
+    }
+
+    // Fits with forgetting follow the start and the end of a push.
+    Evidence<Scalar, m> nothing;
+    HypothesisFit<Scalar, payload_columns, m, false> payload;
+    HypothesisFit<Scalar, force_columns, m, true> force;
+    Storage<OfOutput<friction_columns, false>, m> friction;
+    Storage<OfOutput<1, false>, m> bias;
+    Storage<OfOutput<1, true>, m> push;
+    /// Units of the parameters: kg, kg·m or N.
+    Scalar payload_scale[payload_columns] = {}, force_scale[force_columns] = {};
+
+  private:
+    using Rows = Storage<Scalar, product(m, payload_columns)>;
+
+    [[nodiscard]] Whitening<Scalar> whitening_of(int k, const Block* now, const Block* before,
+                                                 const Speed& speed) const noexcept {
+        return noise_[k].whitening(speed.of(now[k].speed), speed.of(before[k].speed));
+    }
+
+    template <class BlockAt>
+    void scale_columns(const BlockAt& block_at, int count) noexcept {
+        Scalar powers[payload_columns + force_columns] = {};
+        for (int k = 0; k < outputs_; ++k) {
+            const Scalar one = unit(k);
+            const Scalar weight = one > 0 ? 1 / (one * one) : Scalar(0);
+            for (int b = 0; b < count; ++b) {
+                const Block& block = block_at(b)[k];
+                for (int i = 0; i < payload_columns; ++i) {
+                    powers[i] += weight * block.payload[i] * block.payload[i];
+                }
+                for (int i = 0; i < force_columns; ++i) {
+                    powers[payload_columns + i] += weight * block.force[i] * block.force[i];
+                }
+            }
+        }
+        const auto rows = static_cast<Scalar>(count * int{outputs_});
+        using std::sqrt;
+        for (int i = 0; i < payload_columns + force_columns; ++i) {
+            const Scalar scale = powers[i] > 0 ? sqrt(rows / powers[i]) : Scalar(0);
+            (i < payload_columns ? payload_scale[i] : force_scale[i - payload_columns]) = scale;
+        }
+    }
+
+    /// Adds a block to a fit with parameters common to all outputs.
+    template <class Fit, int p>
+    void add_shared(Fit& fit, const Scalar (&scale)[p], Scalar (Block::*columns)[p], const Block* now,
+                    const Block* before) noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            for (int i = 0; i < p; ++i) {
+                rows_[p * k + i] = scale[i] * whitening_[k].of((now[k].*columns)[i], (before[k].*columns)[i]);
+            }
+        }
+        fit.add(rows_.data(), targets_.data());
+    }
+
+    [[no_unique_address]] Extent<m> outputs_;
+    Storage<BlockNoise<Scalar>, m> noise_;
+    Storage<Whitening<Scalar>, m> whitening_;
+    Storage<Scalar, m> targets_;
+    Rows rows_;
+};
+
+} // namespace dfdyn

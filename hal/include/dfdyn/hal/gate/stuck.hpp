@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/core/strict_math.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// Sees a sensor that repeats the very same raw values under fresh stamps. For wrenches, whose last bits are
+/// noise; a standing encoder is constant by right.
+template <int values>
+class StuckGate {
+  public:
+    using Raw = std::array<std::int32_t, static_cast<std::size_t>(values)>;
+
+    /// `limit` identical readings in a row, at least 2, are too many; three over as many periods are, too.
+    /// `period_ns`: of the readings; 0: not known.
+    explicit constexpr StuckGate(int limit, std::int64_t period_ns = 0) noexcept
+        : limit_(limit), longest_ns_((limit - 1) * period_ns - period_ns / 2) {}
+
+    /// Whether this reading is the limit-th identical one in a row, or a later one. One or two that differ
+    /// are believed, but do not end the row: they may have flipped bits.
+    constexpr bool frozen(const Raw& raw, std::int64_t stamp_ns = 0) noexcept {
+        const bool repeats = run_ > 0 && raw == last_;
+        others_ = repeats ? 0 : others_ + 1;
+        if (!repeats && (run_ < 2 || others_ > most_others)) {
+            run_ = 1;
+            others_ = 0;
+            last_ = raw;
+            begin_ns_ = stamp_ns;
+            return false;
+        }
+        if (repeats) {
+            const bool lasts = longest_ns_ > 0 && run_ >= 2 && stamp_ns - begin_ns_ >= longest_ns_;
+            run_ = run_ >= limit_ ? limit_ + 1 : lasts ? limit_ : run_ + 1;
+            episodes_ += run_ == limit_ ? 1U : 0U;
+        }
+        return repeats && run_ >= limit_;
+    }
+
+    /// How often the sensor froze.
+    [[nodiscard]] constexpr std::uint64_t count() const noexcept { return episodes_; }
+
+  private:
+    static constexpr int most_others = 2;
+
+    int limit_;
+    std::int64_t longest_ns_; ///< that identical readings may last; not positive: endless
+    std::int64_t begin_ns_ = 0;
+    int run_ = 0;    ///< identical readings in a row; it stops one beyond the limit
+    int others_ = 0; ///< readings since then that differ
+    Raw last_{};
+    std::uint64_t episodes_ = 0;
+};
+
+} // namespace dfdyn::hal

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/gate/stuck.hpp"
+
+#include "tests/support/catch.hpp"
+
+namespace frozen_test {
+
+using Gate = dfdyn::hal::StuckGate<3>;
+
+TEST_CASE("a sensor that repeats itself is frozen from the limit on, until it moves") {
+    Gate gate(4);
+    const Gate::Raw stuck{7, -3, 0};
+    for (int reading = 1; reading <= 10; ++reading) {
+        CHECK(gate.frozen(stuck) == (reading >= 4));
+    }
+    CHECK(gate.count() == 1);
+    for (int reading = 1; reading <= 10; ++reading) {
+        CHECK(gate.frozen({7, -3, 1}) == (reading >= 6)); // two may be flipped bits
+    }
+    CHECK(gate.count() == 2);
+}
+
+TEST_CASE("a frozen sensor with a flipped bit in between is frozen still") {
+    Gate gate(4);
+    const Gate::Raw stuck{7, -3, 0};
+    for (int reading = 1; reading <= 4; ++reading) {
+        gate.frozen(stuck);
+    }
+    CHECK_FALSE(gate.frozen({7, -3, 1}));
+    CHECK(gate.frozen(stuck));
+    CHECK(gate.count() == 1);
+}
+
+TEST_CASE("a sensor that now and then repeats a reading is not frozen") {
+    Gate gate(4);
+    for (int reading = 0; reading < 1000; ++reading) {
+        CHECK_FALSE(gate.frozen({reading / 3, 0, 0}));
+    }
+    CHECK(gate.count() == 0);
+}
+
+TEST_CASE("three equal readings over the periods of the limit are frozen, whatever came between") {
+    dfdyn::hal::StuckGate<3> gate(5, 2'000'000);
+    const Gate::Raw stuck{7, -3, 0};
+    CHECK_FALSE(gate.frozen(stuck, 0));
+    CHECK_FALSE(gate.frozen(stuck, 2'000'000));
+    CHECK_FALSE(gate.frozen({7, -3, 1}, 4'000'000));
+    CHECK(gate.frozen(stuck, 8'000'000)); // one was lost
+    CHECK(gate.count() == 1);
+}
+
+TEST_CASE("zeros freeze as any other value does") {
+    Gate gate(2);
+    CHECK_FALSE(gate.frozen({0, 0, 0}));
+    CHECK(gate.frozen({0, 0, 0}));
+}
+
+} // namespace frozen_test

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/search/candidate_choice.hpp"
+
+#include <algorithm>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// Returns the joint (from 0) at which a named candidate acts on measured torques; empty for other places.
+std::optional<std::size_t> own_joint(const DiagnosisSignals& signals, const Candidate& candidate) {
+    const std::string& where = candidate.where;
+    const bool at_joint = where.starts_with("joint") || where.starts_with("actuator");
+    const std::size_t digits = where.find_first_of("0123456789");
+    if (signals.wrench() || !candidate.named() || !at_joint || digits == std::string::npos) {
+        return std::nullopt;
+    }
+    return std::stoul(where.substr(digits)) - 1;
+}
+
+} // namespace
+
+bool visible(const DiagnosisSignals& signals, const Candidate& candidate) {
+    const std::optional<std::size_t> joint = own_joint(signals, candidate);
+    return !joint || !signals.hardly_moves(*joint);
+}
+
+Candidate relinearized(const Candidate& chosen, const EffectShape& shape,
+                       const Eigen::VectorXd& coefficients) {
+    Candidate result = chosen.about(shape, coefficients);
+    result.effect = chosen.effect;
+    result.family = chosen.family;
+    result.evidence_offset = chosen.evidence_offset;
+    result.tried =
+        chosen.tried * static_cast<double>(chosen.shapes.size()) / static_cast<double>(result.shapes.size());
+    return result;
+}
+
+std::vector<KeptChoice> kept_choices(const FittedEffects& effects) {
+    std::vector<KeptChoice> kept;
+    for (const ChosenShape& one : effects.chosen) {
+        const Candidate& candidate = effects.candidates[one.candidate];
+        kept.push_back({candidate.key(), one.shape, {}});
+        if (candidate.about) {
+            kept.back().columns = candidate.shapes[one.shape].columns.size();
+        }
+    }
+    return kept;
+}
+
+void choose_again(FittedEffects& effects, const std::vector<KeptChoice>& kept) {
+    effects.chosen.clear();
+    for (const KeptChoice& one : kept) {
+        const auto found = std::ranges::find(effects.candidates, one.key, &Candidate::key);
+        if (found == effects.candidates.end()) {
+            continue;
+        }
+        const auto as_many = [&](const EffectShape& shape) { return shape.columns.size() == one.columns; };
+        const auto same = std::ranges::find_if(found->shapes, as_many);
+        effects.chosen.push_back(
+            {static_cast<std::size_t>(found - effects.candidates.begin()),
+             one.columns ? static_cast<std::size_t>(same - found->shapes.begin()) : one.shape});
+    }
+}
+
+std::vector<std::string> chosen_keys(const FittedEffects& effects) {
+    std::vector<std::string> keys;
+    for (const ChosenShape& one : effects.chosen) {
+        keys.push_back(effects.candidates[one.candidate].key());
+    }
+    std::ranges::sort(keys);
+    return keys;
+}
+
+} // namespace dfdyn::tools

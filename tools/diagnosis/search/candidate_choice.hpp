@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/diagnosis/search/fitted_effects.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// A chosen candidate, identified by its key while the candidates of a search are replaced.
+struct KeptChoice {
+    std::string key;
+    std::size_t shape;
+    std::optional<std::size_t> columns; ///< of the shape, if shapes are made for each model
+};
+
+/// Returns false for a candidate at a joint that hardly moves.
+bool visible(const DiagnosisSignals& signals, const Candidate& candidate);
+
+/// Returns a chosen candidate, relinearized about its estimate. The number of its new shapes does not change
+/// its prior.
+Candidate relinearized(const Candidate& chosen, const EffectShape& shape,
+                       const Eigen::VectorXd& coefficients);
+
+/// Returns the chosen candidates.
+std::vector<KeptChoice> kept_choices(const FittedEffects& effects);
+
+/// Chooses those candidates again that still exist.
+void choose_again(FittedEffects& effects, const std::vector<KeptChoice>& kept);
+
+/// Returns the keys of the chosen candidates, sorted.
+std::vector<std::string> chosen_keys(const FittedEffects& effects);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/search/fitted_effects.hpp"
+
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/candidates/scans.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/search/candidate_choice.hpp"
+#include "tools/diagnosis/search/candidate_entry.hpp"
+#include "tools/diagnosis/search/prune_effects.hpp"
+#include "tools/diagnosis/search/robust_values.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr int most_rounds = 10;
+constexpr int white_rounds = 3;
+/// standard deviation of a link's relative mass error, uniform within ±10 %
+constexpr double mass_deviation = 0.058;
+
+class Search {
+  public:
+    Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, const FitOptions& options)
+        : signals_(signals), options_(options), rows_(signals.measured),
+          regression_(rows_, measured - signals.nominal, rows_.frames_within(options.fitted_share)) {
+        add_nuisance();
+        for (Candidate& candidate : lasting_candidates(signals_, options_.effects)) {
+            if (visible(signals_, candidate)) {
+                static_.emplace_back(rows_, std::move(candidate));
+            }
+        }
+        for (const Effect& effect : options_.effects) {
+            if (effect.scan != nullptr) {
+                scans_.push_back({&effect, effect.scan(signals_, rows_)});
+            }
+        }
+        for (Candidate& candidate : dependence_candidates(signals_, measured - signals.nominal)) {
+            static_.emplace_back(rows_, std::move(candidate));
+        }
+        gather({});
+        result_.fit = fit_effects(result_.problem, {});
+        estimate_noise(true);
+    }
+
+    FittedEffects run() {
+        std::vector<std::string> last;
+        for (int round = 0; round < most_rounds; ++round) {
+            if (options_.progress) {
+                options_.progress(round);
+            }
+            const std::vector<CandidateEntry> dependent = model_dependent();
+            refine();
+            gather(dependent);
+            result_.chosen = search_effects(result_.problem, result_.chosen);
+            result_.fit = fit_effects(result_.problem, result_.chosen);
+            // with the spectrum of a residual that still contains effects, these effects would be taken for
+            // noise
+            estimate_noise(round + 1 < white_rounds);
+            if (round + 1 == white_rounds) {
+                reset_event_thresholds();
+            }
+            std::vector<std::string> keys = chosen_keys(result_);
+            if (keys == last && round > white_rounds) {
+                break;
+            }
+            last = std::move(keys);
+        }
+        prune(result_, regression_);
+        make_robust(result_, regression_);
+        return std::move(result_);
+    }
+
+  private:
+    void add_nuisance();
+    FittedModel fitted_model() const;
+    FittedResidual fitted_residual() const;
+    std::vector<CandidateEntry> model_dependent() const;
+    void refine();
+    void place_nuisance();
+    void count_candidates();
+    void set_candidates(const std::vector<CandidateEntry>& entries);
+    void gather(const std::vector<CandidateEntry>& model_dependent);
+    void estimate_noise(bool white);
+    void reset_event_thresholds();
+    Eigen::VectorXd of_named(Eigen::VectorXd coefficients) const;
+
+    const DiagnosisSignals& signals_;
+    const FitOptions& options_;
+    SpectralRows rows_;
+    struct Scan {
+        const Effect* effect;
+        std::unique_ptr<EffectScan> scan;
+    };
+    std::vector<Scan> scans_;
+    EffectRegression regression_;
+    std::vector<CandidateEntry> static_; ///< candidates that do not depend on the current model
+    std::vector<SpectralColumnPointer> nuisance_;
+    std::vector<double> nuisance_deviation_;
+    FittedEffects result_;
+};
+
+/// Adds the nuisance parameters: small errors of the links' masses, and unknown torque constants.
+void Search::add_nuisance() {
+    const auto add = [this](EffectColumn column, double deviation) {
+        nuisance_.push_back(std::make_shared<const SpectralColumn>(rows_, column));
+        nuisance_deviation_.push_back(deviation);
+        result_.nuisance.push_back(std::move(column));
+    };
+    const Eigen::VectorXd parameters = nominal_parameters(signals_.robot, signals_.kind);
+    for (Eigen::Index body = 0; body < parameters.size() / 10; ++body) {
+        add(on_outputs(signals_.of_body(body, parameters.segment<10>(10 * body))), mass_deviation);
+    }
+    for (Eigen::Index joint = 0; !options_.gains_known && joint < signals_.outputs(); ++joint) {
+        add(on_output(joint, signals_.nominal.col(joint)), 10);
+    }
+    result_.uncertain_masses = parameters.size() / 10;
+}
+
+FittedModel Search::fitted_model() const {
+    const auto of = [&](bool Effect::*trait, bool value) {
+        return result_.effects(signals_, [trait, value](const Candidate& candidate) {
+            return has_trait(candidate.effect, trait) == value;
+        });
+    };
+    FittedModel model{signals_.nominal + of(&Effect::beyond_arm, false),
+                      signals_.wrench() ? Eigen::MatrixXd() : of(&Effect::friction, true),
+                      Eigen::VectorXd::Zero(signals_.outputs()), options_.gains_known};
+    for (std::size_t i = 0; i < result_.chosen.size(); ++i) {
+        const Candidate& candidate = result_.candidates[result_.chosen[i].candidate];
+        if (has_trait(candidate.effect, &Effect::delays_output)) {
+            for (const EffectColumn::Part& part : candidate.columns.front().parts) {
+                model.delay_s[part.output] = result_.fit.coefficients[result_.first_column(i)];
+            }
+        }
+    }
+    return model;
+}
+
+FittedResidual Search::fitted_residual() const {
+    const Eigen::VectorXd coefficients = result_.fit.of_all(regression_.columns());
+    return {signals_, regression_, coefficients, of_named(coefficients),
+            weighted_residual(regression_, coefficients)};
+}
+
+/// Returns the candidates that depend on the current model.
+std::vector<CandidateEntry> Search::model_dependent() const {
+    std::vector<Candidate> found;
+    const auto add = [&](std::vector<Candidate> more) {
+        for (Candidate& candidate : more) {
+            if (visible(signals_, candidate) &&
+                std::ranges::find(found, candidate.key(), &Candidate::key) == found.end()) {
+                found.push_back(std::move(candidate));
+            }
+        }
+    };
+    add(fitted_candidates(signals_, fitted_model(), options_.effects));
+    for (std::size_t i = 0; i < result_.chosen.size(); ++i) {
+        const Candidate& chosen = result_.candidates[result_.chosen[i].candidate];
+        if (chosen.about) {
+            const Eigen::Index first = result_.first_column(i);
+            add({relinearized(chosen, chosen.shapes[result_.chosen[i].shape],
+                              result_.fit.coefficients.segment(first, result_.first_column(i + 1) - first))});
+        } else if (has_trait(chosen.effect, &Effect::kept_while_chosen)) {
+            add({chosen});
+        }
+    }
+    const FittedResidual residual = fitted_residual();
+    for (const auto& [effect, scan] : scans_) {
+        std::vector<Candidate> more = scan->candidates(residual);
+        for (Candidate& candidate : more) {
+            candidate.effect = effect->name;
+        }
+        add(std::move(more));
+        std::vector<Candidate*> own;
+        for (Candidate& candidate : found) {
+            if (candidate.effect == effect->name) {
+                own.push_back(&candidate);
+            }
+        }
+        scan->set_prices(own, residual);
+    }
+    std::vector<CandidateEntry> result;
+    for (Candidate& candidate : found) {
+        result.emplace_back(rows_, std::move(candidate));
+    }
+    return result;
+}
+
+/// Adds shapes near the chosen one to chosen candidates with a continuous shape.
+void Search::refine() {
+    for (ChosenShape& one : result_.chosen) {
+        const Candidate& chosen = result_.candidates[one.candidate];
+        if (chosen.at_value) {
+            const auto entry =
+                std::find_if(static_.begin(), static_.end(), [&](const CandidateEntry& candidate) {
+                    return candidate.candidate.key() == chosen.key();
+                });
+            one.shape = entry->refine(one.shape, rows_);
+        }
+    }
+}
+
+/// Uses the first columns for the nuisance parameters.
+void Search::place_nuisance() {
+    result_.problem.nuisance.clear();
+    for (std::size_t i = 0; i < nuisance_.size(); ++i) {
+        result_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
+    }
+}
+
+/// Counts the candidates of each class: named and unnamed.
+void Search::count_candidates() {
+    const auto named = std::ranges::count_if(result_.candidates, &Candidate::named);
+    const auto unnamed = std::ssize(result_.candidates) - named;
+    for (std::size_t i = 0; i < result_.candidates.size(); ++i) {
+        result_.problem.candidates[i].candidates_of_class =
+            static_cast<double>(result_.candidates[i].named() ? named : unnamed);
+    }
+}
+
+/// Replaces the candidates of the problem. Their columns follow the nuisance parameters'.
+void Search::set_candidates(const std::vector<CandidateEntry>& entries) {
+    std::vector<SpectralColumnPointer> columns = nuisance_;
+    std::map<std::string, std::size_t> families{{"", 0}};
+    result_.candidates.clear();
+    result_.problem.candidates.clear();
+    for (const CandidateEntry& entry : entries) {
+        SearchCandidate candidate;
+        candidate.family = families.emplace(entry.candidate.family, families.size()).first->second;
+        candidate.tried = entry.candidate.tried;
+        candidate.evidence_offset = entry.candidate.evidence_offset;
+        for (const EffectShape& shape : entry.candidate.shapes) {
+            SearchCandidate::Shape one{{}, shape.allowed, shape.bounded, shape.nearest};
+            for (const std::size_t column : shape.columns) {
+                one.columns.push_back(static_cast<Eigen::Index>(columns.size() + column));
+            }
+            candidate.shapes.push_back(std::move(one));
+        }
+        columns.insert(columns.end(), entry.columns.begin(), entry.columns.end());
+        result_.problem.candidates.push_back(std::move(candidate));
+        result_.candidates.push_back(entry.candidate);
+    }
+    regression_.set_columns(std::move(columns));
+}
+
+/// Builds the problem of all candidates with the current noise. Chosen candidates remain chosen if they still
+/// exist.
+void Search::gather(const std::vector<CandidateEntry>& model_dependent) {
+    const std::vector<KeptChoice> chosen = kept_choices(result_);
+    std::vector<CandidateEntry> entries;
+    for (const CandidateEntry& entry : static_) {
+        const std::string key = entry.candidate.key();
+        if (std::ranges::none_of(model_dependent,
+                                 [&](const CandidateEntry& one) { return one.candidate.key() == key; })) {
+            entries.push_back(entry);
+        }
+    }
+    entries.insert(entries.end(), model_dependent.begin(), model_dependent.end());
+    set_candidates(entries);
+    count_candidates();
+    place_nuisance();
+    result_.problem.sums = regression_.weighted_sums();
+    choose_again(result_, chosen);
+}
+
+Eigen::VectorXd Search::of_named(Eigen::VectorXd coefficients) const {
+    for (const ChosenShape& one : result_.chosen) {
+        if (!result_.candidates[one.candidate].named()) {
+            coefficients(result_.problem.candidates[one.candidate].shapes[one.shape].columns).setZero();
+        }
+    }
+    return coefficients;
+}
+
+void Search::estimate_noise(bool white) {
+    const Eigen::VectorXd coefficients = result_.fit.of_all(regression_.columns());
+    Eigen::MatrixXd noise(rows_.bins(), regression_.outputs());
+    std::vector<Eigen::MatrixXd> noise_scale;
+    for (Eigen::Index output = 0; output < noise.cols(); ++output) {
+        const Eigen::MatrixXd left = regression_.residual(output, coefficients);
+        const Eigen::RowVectorXd filled = rows_.filled(output).head(left.cols());
+        noise.col(output) = noise_spectrum(
+            left, filled, regression_.spent(output, result_.fit.columns, result_.fit.covariance));
+        noise_scale.push_back(white ? Eigen::MatrixXd::Ones(left.rows(), left.cols()).eval()
+                                    : local_noise_scale(left, filled, noise.col(output)));
+    }
+    if (white) {
+        noise = noise.colwise().mean().replicate(noise.rows(), 1).eval();
+    }
+    regression_.set_noise(noise, noise_scale);
+    result_.noise = std::move(noise);
+}
+
+/// Resets the evidence offsets of contacts and picked-up payloads. They were computed for white noise and are
+/// computed again.
+void Search::reset_event_thresholds() {
+    for (const ChosenShape& one : result_.chosen) {
+        result_.candidates[one.candidate].evidence_offset = 0;
+    }
+}
+
+} // namespace
+
+FittedEffects find_effects(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                           const FitOptions& options) {
+    return Search(signals, measured, options).run();
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/search/prune_effects.hpp"
+
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr Eigen::Index validation_blocks = 6;
+constexpr double price_of_a_name = 5; ///< log-evidence: prior odds of 1 to 150
+
+/// Returns whether the model with exact masses needs additional named effects, all of them errors of links.
+bool needs_links_only(const FittedEffects& at, const std::vector<ChosenShape>& exact) {
+    bool links = false;
+    for (const ChosenShape& one : exact) {
+        const bool is_new =
+            std::ranges::find(at.chosen, one.candidate, &ChosenShape::candidate) == at.chosen.end();
+        if (is_new && !has_trait(at.candidates[one.candidate].effect, &Effect::mass_of_link)) {
+            return false;
+        }
+        links = links || is_new;
+    }
+    return links;
+}
+
+/// Decides whether the links' masses equal those of the robot's file. The search before assumed uncertain
+/// masses. The prior probability that one link is wrong equals that of all being uncertain; each further link
+/// has the full penalty. The penalty for one cause of many is therefore compensated.
+void decide_masses(FittedEffects& at, const EffectRegression& regression) {
+    at.problem.sums = regression.weighted_sums();
+    at.chosen = search_effects(at.problem, at.chosen);
+    at.fit = fit_effects(at.problem, at.chosen);
+    SearchProblem exact = at.problem;
+    exact.nuisance.erase(exact.nuisance.begin(), exact.nuisance.begin() + at.uncertain_masses);
+    const std::vector<ChosenShape> chosen = search_effects(exact, at.chosen);
+    const EffectFit fit = fit_effects(exact, chosen);
+    if (fit.score + (needs_links_only(at, chosen) ? price_of_a_name : 0) >= at.fit.score) {
+        at.problem = std::move(exact);
+        at.chosen = chosen;
+        at.fit = fit;
+        at.nuisance.erase(at.nuisance.begin(), at.nuisance.begin() + at.uncertain_masses);
+        at.uncertain_masses = 0;
+    }
+}
+
+std::vector<WeighedSums> sums_of_blocks(const EffectRegression& regression) {
+    std::vector<WeighedSums> blocks;
+    const Eigen::Index frames = regression.fitted_frames();
+    for (Eigen::Index block = 0; block < validation_blocks; ++block) {
+        const Eigen::Index first = block * frames / validation_blocks;
+        blocks.push_back(regression.weighted_sums(first, (block + 1) * frames / validation_blocks - first));
+    }
+    return blocks;
+}
+
+/// Returns the coefficients of all columns: those of the chosen events, and zeros elsewhere. Other times
+/// carry no information on an event.
+Eigen::VectorXd of_events(const FittedEffects& at, Eigen::Index columns) {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(columns);
+    const Eigen::VectorXd all = at.fit.of_all(columns);
+    for (const ChosenShape& one : at.chosen) {
+        if (at.candidates[one.candidate].event) {
+            const auto& own = at.problem.candidates[one.candidate].shapes[one.shape].columns;
+            result(own) = all(own);
+        }
+    }
+    return result;
+}
+
+/// Leave-one-block-out pruning: removes each persistent effect whose removal does not worsen the held-out
+/// prediction, also from the `promising` candidates. The events' contribution is subtracted from all blocks.
+/// Returns true if any effect was removed.
+bool keep_what_predicts(FittedEffects& at, const EffectRegression& regression, SearchProblem& promising) {
+    if (regression.fitted_frames() < validation_blocks) {
+        return false; // too few frames for cross-validation
+    }
+    SearchProblem problem = at.problem;
+    std::vector<WeighedSums> blocks = sums_of_blocks(regression);
+    const Eigen::VectorXd events = of_events(at, regression.columns());
+    problem.sums.moment -= problem.sums.gram * events;
+    for (WeighedSums& block : blocks) {
+        block.moment -= block.gram * events;
+    }
+    const auto lasting =
+        std::stable_partition(at.chosen.begin(), at.chosen.end(),
+                              [&at](const ChosenShape& one) { return at.candidates[one.candidate].event; });
+    std::vector<ChosenShape> kept(lasting, at.chosen.end());
+    at.chosen.erase(lasting, at.chosen.end());
+    double best = held_out_score(problem, blocks, kept);
+    bool dropped = false;
+    while (true) {
+        std::size_t worst = kept.size();
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            const double others = held_out_score(problem, blocks, without(kept, i));
+            if (others >= best) {
+                best = others;
+                worst = i;
+            }
+        }
+        if (worst == kept.size()) {
+            break;
+        }
+        promising.candidates[kept[worst].candidate].shapes.clear();
+        dropped = true;
+        kept = without(kept, worst);
+    }
+    at.chosen.insert(at.chosen.end(), kept.begin(), kept.end());
+    return dropped;
+}
+
+/// Removes, one by one, named effects whose coefficients are inadmissible in the fit without unnamed effects.
+/// A removed effect is no longer a candidate of `promising` or of the model's problem. Returns true if any
+/// effect was removed.
+bool keep_what_is_allowed(FittedEffects& at, SearchProblem& promising) {
+    bool dropped = false;
+    for (fit_named(at); !at.named.allowed; fit_named(at)) {
+        const auto forbidden =
+            std::ranges::find_if(at.chosen, [&, i = std::size_t{0}](const auto& one) mutable {
+                return !at.problem.candidates[one.candidate].shapes[one.shape].allowed(at.coefficients(i++));
+            });
+        promising.candidates[forbidden->candidate].shapes.clear();
+        at.problem.candidates[forbidden->candidate].shapes.clear();
+        at.chosen.erase(forbidden);
+        dropped = true;
+    }
+    return dropped;
+}
+
+} // namespace
+
+void fit_named(FittedEffects& at) {
+    std::stable_partition(at.chosen.begin(), at.chosen.end(),
+                          [&at](const ChosenShape& one) { return at.candidates[one.candidate].named(); });
+    at.fit = fit_effects(at.problem, at.chosen);
+    at.named = fit_effects(at.problem, at.named_effects());
+    at.values = at.named;
+}
+
+void prune(FittedEffects& at, const EffectRegression& regression) {
+    decide_masses(at, regression);
+    SearchProblem promising = at.problem; // without the shapes of removed effects
+    while (keep_what_predicts(at, regression, promising) || keep_what_is_allowed(at, promising)) {
+        at.chosen = search_effects(promising, at.chosen);
+        at.fit = fit_effects(at.problem, at.chosen);
+    }
+}
+
+} // namespace dfdyn::tools

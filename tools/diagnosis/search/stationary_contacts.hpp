@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/search/fitted_effects.hpp"
+
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// A contact at a joint during standstill.
+struct StationaryContact {
+    std::size_t joint = 0;
+    ContactPulse pulse;
+    /// Change of the joint's torque (N·m). The contact acts against it and is larger by the part that
+    /// friction balances.
+    double change = 0, change_deviation = 0;
+    /// Largest change that friction allows: from its maximum in one direction to its maximum in the other.
+    /// The deviation includes the uncertainty of the rigid body's own change.
+    double held = 0, held_deviation = 0;
+    Eigen::VectorXd share; ///< T: contribution of the contact to the joint's output
+
+    /// Probability that friction alone cannot explain the change, from both uncertainties.
+    double probability() const;
+    double deviation() const; ///< of their difference
+};
+
+/// Returns contacts at joints during standstill.
+///
+/// The regression excludes rows in which a joint is stationary and its output deviates from the rigid body
+/// (`joint_row_weight`, which `signals.measured.weight` must contain), because static friction is
+/// undetermined there. It is bounded, however: without a contact, the torque of a stationary joint changes by
+/// at most twice its dry friction, in addition to the influence of the moving links. The function returns the
+/// pulses that exceed this bound, both in the residual of the rigid body for `measured` (T x m) and in the
+/// residual of the explanation, `rest` (T x m). A cause identified during motion may be wrong during
+/// standstill.
+///
+/// Limits:
+/// - A contact that persists is not detected, because static friction can leave a step, too.
+/// - Joints whose dry friction is unknown (less than four standard deviations) have no result.
+/// - Static friction is assumed equal to sliding friction unless a static level was identified.
+/// - A wrench has no result.
+///
+/// Cost: 8 T products per pulse length, and a fit of each shape of each cause at a joint.
+std::vector<StationaryContact> standing_contacts(const DiagnosisSignals& signals,
+                                                 const FittedEffects& fitted_effects,
+                                                 const Eigen::MatrixXd& measured,
+                                                 const Eigen::MatrixXd& rest);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/diagnosis/diagnosis.hpp"
+
+namespace dfdyn::tools {
+
+/// Returns the estimated nuisance parameters of an explanation: every joint's torque constant if it was not
+/// given, and every link's mass if masses are uncertain. `torque_gains`: A per N·m with which the
+/// explanation's torques were computed.
+std::vector<NuisanceEstimate> estimate_nuisances(const DiagnosisSignals& signals,
+                                                 const FittedEffects& fitted_effects,
+                                                 const Eigen::VectorXd& torque_gains);
+
+} // namespace dfdyn::tools
