@@ -59,7 +59,7 @@ TEST_CASE("setting the wall clock does not change the stamps") {
     set_wall_clock_by(-step_s);
 }
 
-TEST_CASE("F22: frames that wait together keep their own stamps") {
+TEST_CASE("fault 28: frames that wait together keep their own stamps") {
     SocketCanBus bus(on_vcan0());
     SocketCanBus peer(on_vcan0());
     empty(bus);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults of the controller and its interface: their effect on the samples, given the state and counters of
 // the bus. The socket tests check the other properties:
-// - F1, F2: error frames are requested and read with their own size.
-// - F3, F6, F7, F9: bus-off, ENOBUFS, dropped frames and a lost interface set state and counters.
-// - F17, F22: the clock that stamps a frame, and the conversion of the time stamp.
-// - F19: the flags of a frame give its origin.
+// - error frames are requested and read with their own size.
+// - bus-off, ENOBUFS, dropped frames and a lost interface set state and counters.
+// - the clock that stamps a frame, and the conversion of the time stamp.
+// - the flags of a frame give its origin.
 #include "tests/hal/support/arm_on_bus.hpp"
 
 namespace hal = dfdyn::hal;
@@ -26,7 +26,7 @@ void silence(Frames& frames) { frames.clear(); }
 
 } // namespace
 
-TEST_CASE("F1: error frames are not decoded as data whatever their bits") {
+TEST_CASE("error frames are not decoded as data whatever their bits") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -41,7 +41,7 @@ TEST_CASE("F1: error frames are not decoded as data whatever their bits") {
     CHECK(arm.assembly.bus(0).rejected.count() == 0);
 }
 
-TEST_CASE("F3: a bus-off controller gives no samples until it restarts") {
+TEST_CASE("fault 25: a bus-off controller gives no samples until it restarts") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -58,7 +58,7 @@ TEST_CASE("F3: a bus-off controller gives no samples until it restarts") {
     CHECK(arm.assembly.counters().positions_refused[static_cast<int>(Reason::bus_off)] == 50);
 }
 
-TEST_CASE("F3: values that have not expired are not used while the controller is bus-off") {
+TEST_CASE("fault 25: values that have not expired are not used while the controller is bus-off") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -66,7 +66,7 @@ TEST_CASE("F3: values that have not expired are not used while the controller is
     CHECK(arm.tick().position() == Reason::bus_off);
 }
 
-TEST_CASE("F4: an error-passive controller is reported and its data are learned") {
+TEST_CASE("an error-passive controller is reported and its data are learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -80,7 +80,7 @@ TEST_CASE("F4: an error-passive controller is reported and its data are learned"
     CHECK_FALSE(arm.assembly.bus(0).health.degraded());
 }
 
-TEST_CASE("F5: lost arbitration is not a fault") {
+TEST_CASE("lost arbitration is not a fault") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -92,7 +92,7 @@ TEST_CASE("F5: lost arbitration is not a fault") {
     }
 }
 
-TEST_CASE("F6: a full send queue refuses our frames and has no other effect") {
+TEST_CASE("a full send queue refuses our frames and has no other effect") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -104,7 +104,7 @@ TEST_CASE("F6: a full send queue refuses our frames and has no other effect") {
     CHECK(arm.bus.condition.send_refused == 50);
 }
 
-TEST_CASE("F9: an interface that is down is distinguished from a silent one") {
+TEST_CASE("an interface that is down is distinguished from a silent one") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();

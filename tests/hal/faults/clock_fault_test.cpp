@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// F16: time stamps that jump while the clock of the bus continues.
+// Time stamps that jump while the clock of the bus continues.
 #include "tests/hal/support/arm_on_bus.hpp"
 
 namespace hal = dfdyn::hal;
@@ -20,7 +20,7 @@ auto shifted_by(std::int64_t jump_ns) {
 
 } // namespace
 
-TEST_CASE("F16: frames with an outlier as time stamp are rejected") {
+TEST_CASE("fault 20: frames with an outlier as time stamp are rejected") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -35,7 +35,7 @@ TEST_CASE("F16: frames with an outlier as time stamp are rejected") {
     CHECK(arm.assembly.bus(0).clock.adopted() == 0);
 }
 
-TEST_CASE("F16: a clock that was set is rejected at first and then adopted and counted") {
+TEST_CASE("faults 22 and 23: a clock that was set is rejected at first and then adopted and counted") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::int64_t jump : {-6000 * ms, 6000 * ms}) {
         ArmOnBus arm(engine);
@@ -53,7 +53,7 @@ TEST_CASE("F16: a clock that was set is rejected at first and then adopted and c
     }
 }
 
-TEST_CASE("F16: no second sample is assembled for the same time") {
+TEST_CASE("fault 22: no second sample is assembled for the same time") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();

@@ -40,7 +40,7 @@ TEST_CASE("an encoder with an error reported by its board has no positions and i
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F14: faults of the encoders and of the sensor are reported independently") {
+TEST_CASE("faults of the encoders and of the sensor are reported independently") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();

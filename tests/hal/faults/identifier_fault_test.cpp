@@ -12,7 +12,7 @@ using Frames = std::vector<hal::Frame>;
 
 } // namespace
 
-TEST_CASE("F2 and F23: frames with a wrong type or length are rejected and named") {
+TEST_CASE("fault 29: frames with a wrong type or length are rejected and named") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -36,7 +36,7 @@ TEST_CASE("F2 and F23: frames with a wrong type or length are rejected and named
     CHECK(arm.assembly.bus(0).rejected.count() == 5);
 }
 
-TEST_CASE("F19: our own frames that come back are not decoded as the devices' frames") {
+TEST_CASE("our own frames that come back are not decoded as the devices' frames") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -53,7 +53,7 @@ TEST_CASE("F19: our own frames that come back are not decoded as the devices' fr
     CHECK(arm.assembly.bus(0).own == 20);
 }
 
-TEST_CASE("F19: frames of this host such as a simulation or a replay on a live bus are counted") {
+TEST_CASE("frames of this host such as a simulation or a replay on a live bus are counted") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -63,7 +63,7 @@ TEST_CASE("F19: frames of this host such as a simulation or a replay on a live b
     CHECK(arm.assembly.bus(0).from_host == 20);
 }
 
-TEST_CASE("F20: unknown identifiers are counted and the first one is named") {
+TEST_CASE("fault 30: unknown identifiers are counted and the first one is named") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -79,7 +79,7 @@ TEST_CASE("F20: unknown identifiers are counted and the first one is named") {
     CHECK(arm.assembly.bus(0).unknown.first().extended);
 }
 
-TEST_CASE("F20: a second sensor on the same identifiers is detected and neither is learned") {
+TEST_CASE("fault 18: a second sensor on the same identifiers is detected and neither is learned") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::int64_t behind : {60 * us, 300 * us, 500 * us}) {
         ArmOnBus arm(engine);
@@ -104,7 +104,7 @@ TEST_CASE("F20: a second sensor on the same identifiers is detected and neither 
     }
 }
 
-TEST_CASE("F20: two devices configured for one identifier are detected before the start") {
+TEST_CASE("fault 17: two devices configured for one identifier are detected before the start") {
     using Board = hal::icub::TwoJointBoard;
     using Assembly = hal::SampleAssembly<double, 4, Board, 2, hal::EffortOutput<4, 4>>;
     const auto colliding = [](int second_address) {

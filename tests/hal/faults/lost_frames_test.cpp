@@ -18,7 +18,7 @@ auto without(std::size_t index) {
 
 } // namespace
 
-TEST_CASE("F7 and F8: frames dropped by the kernel or the controller invalidate the output of that tick") {
+TEST_CASE("fault 38: frames dropped by the kernel or the controller invalidate the output of that tick") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -33,8 +33,8 @@ TEST_CASE("F7 and F8: frames dropped by the kernel or the controller invalidate 
     CHECK(arm.assembly.bus(0).health.losses() == 6);
 }
 
-TEST_CASE(
-    "F7: halves of a wrench on both sides of a loss are not paired even if their time stamps are close") {
+TEST_CASE("fault 38: halves of a wrench on both sides of a loss are not paired even if their time stamps are "
+          "close") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -53,7 +53,7 @@ TEST_CASE(
     CHECK(arm.ticks_to_recover() <= 3);
 }
 
-TEST_CASE("F8: messages that a board lost invalidate the output of that tick") {
+TEST_CASE("fault 38: messages that a board lost invalidate the output of that tick") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -64,7 +64,7 @@ TEST_CASE("F8: messages that a board lost invalidate the output of that tick") {
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F10: a silent joint gives no samples and is named") {
+TEST_CASE("fault 3: a silent joint gives no samples and is named") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -83,7 +83,7 @@ TEST_CASE("F10: a silent joint gives no samples and is named") {
     CHECK(arm.run(50));
 }
 
-TEST_CASE("F10: without its sensor the arm is predicted but not learned") {
+TEST_CASE("fault 4: without its sensor the arm is predicted but not learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -100,7 +100,7 @@ TEST_CASE("F10: without its sensor the arm is predicted but not learned") {
     CHECK(arm.assembly.output().track().gap().count() == 1);
 }
 
-TEST_CASE("F11: each measurement is delivered as new exactly once") {
+TEST_CASE("each measurement is delivered as new exactly once") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -142,7 +142,7 @@ TEST_CASE("a sensor that loses all its torque frames is never learned") {
     CHECK(arm.ticks_to_recover() <= 3);
 }
 
-TEST_CASE("F15: a burst above the limit of a tick is counted and read in the next ticks") {
+TEST_CASE("fault 28: a burst above the limit of a tick is counted and read in the next ticks") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -161,7 +161,7 @@ TEST_CASE("F15: a burst above the limit of a tick is counted and read in the nex
     CHECK(arm.assembly.bus(0).unknown.count() == 600);
 }
 
-TEST_CASE("F17: halves without their own time stamps are paired in their order") {
+TEST_CASE("halves without their own time stamps are paired in their order") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -178,7 +178,7 @@ TEST_CASE("F17: halves without their own time stamps are paired in their order")
     CHECK(arm.assembly.output().pairing().unpaired(0) + arm.assembly.output().pairing().unpaired(1) == 0);
 }
 
-TEST_CASE("F18: frames that overtook each other are ordered by their time stamps") {
+TEST_CASE("fault 7: frames that overtook each other are ordered by their time stamps") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -187,7 +187,7 @@ TEST_CASE("F18: frames that overtook each other are ordered by their time stamps
     }
 }
 
-TEST_CASE("F18: positions that were overtaken by newer ones are rejected and counted") {
+TEST_CASE("fault 7: positions that were overtaken by newer ones are rejected and counted") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -201,7 +201,7 @@ TEST_CASE("F18: positions that were overtaken by newer ones are rejected and cou
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F21: all waiting frames are read in a tick so that none becomes old in the queue") {
+TEST_CASE("fault 28: all waiting frames are read in a tick so that none becomes old in the queue") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();

@@ -21,7 +21,7 @@ auto with_wrench_of(const Frames& earlier) {
 
 } // namespace
 
-TEST_CASE("F12: a sensor that repeats itself with new time stamps is not learned") {
+TEST_CASE("fault 14: a sensor that repeats itself with new time stamps is not learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -51,7 +51,7 @@ TEST_CASE("F12: a sensor that repeats itself with new time stamps is not learned
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F12: repeated positions of a slow joint are accepted") {
+TEST_CASE("fault 12: repeated positions of a slow joint are accepted") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -68,7 +68,7 @@ TEST_CASE("F12: repeated positions of a slow joint are accepted") {
     CHECK(repeated > 10);
 }
 
-TEST_CASE("F12: the last good wrench repeated by a saturated sensor is not learned") {
+TEST_CASE("fault 16: the last good wrench repeated by a saturated sensor is not learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -92,7 +92,7 @@ TEST_CASE("F12: the last good wrench repeated by a saturated sensor is not learn
     CHECK(arm.assembly.output().saturation().episodes() == 3);
 }
 
-TEST_CASE("F13: without its full scales the sensor is not learned and positions are predicted") {
+TEST_CASE("fault 33: without its full scales the sensor is not learned and positions are predicted") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine, false);
     for (int tick = 0; tick < 50; ++tick) {
@@ -108,7 +108,7 @@ TEST_CASE("F13: without its full scales the sensor is not learned and positions 
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F13: an impossible full scale stops the learning until all full scales are reported again") {
+TEST_CASE("fault 33: an impossible full scale stops the learning until all full scales are reported again") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -130,7 +130,8 @@ TEST_CASE("F13: an impossible full scale stops the learning until all full scale
     }
 }
 
-TEST_CASE("F13: a changed full scale never rescales the wrench and another set changes nothing") {
+TEST_CASE(
+    "faults 33 and 34: a changed full scale never rescales the wrench and another set changes nothing") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -145,7 +146,7 @@ TEST_CASE("F13: a changed full scale never rescales the wrench and another set c
     CHECK(arm.run(10));
 }
 
-TEST_CASE("F13: wrenches beyond the sensor's range are rejected") {
+TEST_CASE("fault 16: wrenches beyond the sensor's range are rejected") {
     DFDYN_SEEDED_ENGINE(engine);
     // A plausible full scale of another sensor, 9000 N instead of 1500 N, so that large forces exceed 1500 N.
     ArmOnBus arm(engine, false);
@@ -165,7 +166,7 @@ TEST_CASE("F13: wrenches beyond the sensor's range are rejected") {
     CHECK(arm.assembly.output().track().range().count() > 20);
 }
 
-TEST_CASE("F24: zeros after power-on are not accepted as positions") {
+TEST_CASE("fault 9: zeros after power-on are not accepted as positions") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     for (int tick = 0; tick < 100; ++tick) {
@@ -177,7 +178,7 @@ TEST_CASE("F24: zeros after power-on are not accepted as positions") {
     CHECK(arm.run(50));
 }
 
-TEST_CASE("F24: a board qualifies again after a restart") {
+TEST_CASE("fault 10: a board qualifies again after a restart") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -191,7 +192,7 @@ TEST_CASE("F24: a board qualifies again after a restart") {
     CHECK(arm.assembly.position(0).gap().count() >= 1);
 }
 
-TEST_CASE("F24: zeros of a sensor after power-on are not accepted as a wrench") {
+TEST_CASE("fault 9: zeros of a sensor after power-on are not accepted as a wrench") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     for (int tick = 0; tick < 100; ++tick) {
