@@ -133,7 +133,7 @@ int main(int count, char** arguments) {
     using Input = DerivativeFreeReduced<6, 3>;
     const bool models = run_model<tests::TestModel<float>>() &&
                         run_model<tests::TestModel<double, Standard<6>, 15>>() &&
-                        run_model<tests::TestModel<float, DerivativeFreeStructuredRecursive<6>>>() &&
+                        run_model<tests::TestModel<float, DerivativeFreeStructured<6>>>() &&
                         run_model<tests::TestParametric<float>>() && run_model<tests::TestMean<float>>() &&
                         run_model<tests::TestKernel<double, Input, 15>>();
     const bool good = models && run_ur5() && run_receive();

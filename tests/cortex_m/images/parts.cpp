@@ -266,7 +266,6 @@ void check_all() {
     check_input<Scalar, DerivativeFreeWeighted<10>>("DFW ");
     check_input<Scalar, DerivativeFreeReduced<10, 3>>("DFR ");
     check_input<Scalar, DerivativeFreeStructured<10>>("DFSR ");
-    check_input<Scalar, DerivativeFreeStructuredRecursive<10>>("recursive DFSR ");
     check_input<Scalar, Standard<10>>("adaptive windows ");
     check_input<Scalar, StandardMeasured>("measured derivatives ");
     check_features<Scalar, 50>("random features ");

@@ -24,7 +24,7 @@ using UdWhole = TestModel<Double, DerivativeFreeReduced<6, 3>, 16>; // whole pan
 using Parametric = TestParametric<Double>;
 using Mean = TestMean<Double, DerivativeFree<6>, 15, DerivativeFreeReduced<6, 3>>;
 using Kernel = TestKernel<Double, DerivativeFreeReduced<6, 3>, 15>;
-using KernelSingle = TestKernel<Single, DerivativeFreeStructuredRecursive<6>, 9, StandardMeasured>;
+using KernelSingle = TestKernel<Single, DerivativeFreeStructured<6>, 9, StandardMeasured>;
 
 template <class Model>
 constexpr Cost cost_of() {
@@ -178,8 +178,7 @@ TEMPLATE_TEST_CASE_SIG("the cost of learning is that of any size", "",
 
 TEMPLATE_TEST_CASE("an input map costs what its declaration says", "", DerivativeFree<6>,
                    DerivativeFreeWeighted<3>, (DerivativeFreeReduced<6, 3>), DerivativeFreeStructured<6>,
-                   DerivativeFreeStructuredRecursive<6>, StandardMeasured, Standard<2>, Standard<6>,
-                   Standard<20>) {
+                   StandardMeasured, Standard<2>, Standard<6>, Standard<20>) {
     constexpr int joints = 5;
     using Map = typename TestType::template Map<Double, joints>;
     const typename Map::Constants constants{};

@@ -53,8 +53,7 @@ TEST_CASE("numbers stored in place take the bytes of `storage_bytes`") {
 
 TEMPLATE_TEST_CASE("an input map takes the bytes that it declares", "", DerivativeFree<3>, DerivativeFree<40>,
                    DerivativeFreeWeighted<10>, (DerivativeFreeReduced<10, 3>), (DerivativeFreeReduced<60, 5>),
-                   DerivativeFreeStructured<30>, DerivativeFreeStructuredRecursive<30>, Standard<6>,
-                   Standard<40>, StandardMeasured) {
+                   DerivativeFreeStructured<30>, Standard<6>, Standard<40>, StandardMeasured) {
     check_input<TestType, 1>();
     check_input<TestType, 4>();
     check_input<TestType, 30>();

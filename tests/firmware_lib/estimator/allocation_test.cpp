@@ -85,7 +85,7 @@ void check(std::mt19937_64& engine) {
 
 // Every input map, learner and structure, with either scalar. DFW and DFSR use the maps of DF and DFR.
 TEMPLATE_TEST_CASE("no call of an estimator uses the heap", "", DerivativeFree<5>,
-                   (DerivativeFreeReduced<5, 3>), DerivativeFreeStructuredRecursive<5>, Standard<5>,
+                   (DerivativeFreeReduced<5, 3>), DerivativeFreeStructured<5>, Standard<5>,
                    StandardMeasured) {
     DFDYN_SEEDED_ENGINE(engine);
     check<TestModel<float, TestType, 4>>(engine);
@@ -93,7 +93,7 @@ TEMPLATE_TEST_CASE("no call of an estimator uses the heap", "", DerivativeFree<5
 }
 
 TEMPLATE_TEST_CASE("no call of an estimator with physics uses the heap", "", (DerivativeFreeReduced<5, 3>),
-                   DerivativeFreeStructuredRecursive<5>, Standard<5>, StandardMeasured) {
+                   DerivativeFreeStructured<5>, Standard<5>, StandardMeasured) {
     DFDYN_SEEDED_ENGINE(engine);
     check<TestParametric<double, TestType>>(engine);
     check<TestMean<double, TestType, 4>>(engine);

@@ -19,12 +19,12 @@ namespace standstill_test {
 using namespace dfdyn;
 using namespace dfdyn::tests;
 
-using UdFloat = TestModel<float, DerivativeFreeStructuredRecursive<6>, 32>;
-using UdDouble = TestModel<double, DerivativeFreeStructuredRecursive<6>, 32>;
+using UdFloat = TestModel<float, DerivativeFreeStructured<40>, 32>;
+using UdDouble = TestModel<double, DerivativeFreeStructured<40>, 32>;
 using Parametric = TestParametric<float, StandardMeasured>;
-using Mean = TestMean<float, DerivativeFreeStructuredRecursive<6>, 32, StandardMeasured>;
-using Kernel = TestKernel<float, DerivativeFreeStructuredRecursive<6>, 32, StandardMeasured>;
-using KernelDouble = TestKernel<double, DerivativeFreeStructuredRecursive<6>, 32, StandardMeasured>;
+using Mean = TestMean<float, DerivativeFreeStructured<40>, 32, StandardMeasured>;
+using Kernel = TestKernel<float, DerivativeFreeStructured<40>, 32, StandardMeasured>;
+using KernelDouble = TestKernel<double, DerivativeFreeStructured<40>, 32, StandardMeasured>;
 
 constexpr int stop_ticks = 500;
 constexpr double encoder_count = 6e-6; // 20 bits per turn
@@ -83,10 +83,9 @@ class StoppingArm {
 /// Constants with low-pass filters, so that one encoder count gives less acceleration than the motion.
 template <class Model>
 typename Model::Constants filtered_constants(std::mt19937_64& engine, double forgetting_factor) {
-    using Scalar = typename Model::Scalar;
     auto constants = make_constants<Model>(engine, forgetting_factor);
     if constexpr (Model::columns > 0) {
-        constants.input.filters = {Scalar(100), Scalar(1e5), Scalar(0.9), Scalar(0.9)};
+        set_filters<typename Model::Input>(constants.input, {200, 2e5, 0.8, 0.8});
     }
     return constants;
 }
@@ -181,7 +180,7 @@ class Standstill {
                 result_.largest_variance =
                     std::max(result_.largest_variance, largest_parameter_variance(*estimator_, constants_));
             }
-            if (ticks - t <= 20) { // only the window is updated in these ticks
+            if (ticks - t <= 50) { // only the window is updated in these ticks
                 sample.output_valid = false;
                 tick(twin, sample);
             }

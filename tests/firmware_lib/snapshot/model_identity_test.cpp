@@ -48,7 +48,6 @@ std::vector<ModelKind> kinds(std::mt19937_64& engine) {
         kind<TestModel<float, DerivativeFreeWeighted<lags>>>("NP, DFW", engine),
         kind<TestModel<float, Reduced>>("NP, DFR", engine),
         kind<TestModel<float, DerivativeFreeStructured<lags>>>("NP, DFSR", engine),
-        kind<TestModel<float, DerivativeFreeStructuredRecursive<lags>>>("NP, recursive DFSR", engine),
         kind<TestModel<float, Standard<lags>>>("NP, STD", engine),
         kind<TestModel<float, StandardMeasured>>("NP, measured STD", engine),
         kind<TestModel<double, Reduced>>("NP, DFR, double", engine),

@@ -92,6 +92,17 @@ typename Model::Sample moving_sample(std::int64_t tick, std::mt19937_64& engine)
 
 /// Sets the constants of an input such that its elements are (q, q̇, q̈) of each joint times `sizes`; other
 /// elements stay unchanged.
+/// Sets the rows of an input with three of them to the filters of DFSR.
+template <class Input, class Constants>
+void set_filters(Constants& input, const StructuredFilters<double>& filters) {
+    std::array<double, 3 * (Input::lags + 1)> rows{};
+    structured_rows<double>(filters, Input::lags, rows.data());
+    to_difference_form(rows.data(), 3, Input::lags, rows.data());
+    std::transform(rows.begin(), rows.end(), input.rows.begin(), [](double value) {
+        return static_cast<std::remove_cvref_t<decltype(input.rows[0])>>(value);
+    });
+}
+
 template <class Input, class Constants>
 void set_input(Constants& input, const std::array<double, 3>& sizes) {
     constexpr double beta = 0.05; // so small that the tail vanishes after six lags
@@ -103,14 +114,7 @@ void set_input(Constants& input, const std::array<double, 3>& sizes) {
         input.scale[element] = static_cast<Scalar>(Input::features_per_joint == 3 ? sizes[row] : 1);
     }
     if constexpr (requires { input.rows; }) {
-        std::array<double, 3 * (Input::lags + 1)> rows{};
-        structured_rows<double>({alpha1, alpha2, beta, beta}, Input::lags, rows.data());
-        to_difference_form(rows.data(), 3, Input::lags, rows.data());
-        std::transform(rows.begin(), rows.end(), input.rows.begin(),
-                       [](double value) { return static_cast<Scalar>(value); });
-    }
-    if constexpr (requires { input.filters; }) {
-        input.filters = {Scalar(alpha1), Scalar(alpha2), Scalar(beta), Scalar(beta)};
+        set_filters<Input>(input, {alpha1, alpha2, beta, beta});
     }
     if constexpr (requires { input.position_noise_bound; }) {
         input.position_noise_bound = Scalar(1e-5);
