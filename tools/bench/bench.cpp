@@ -18,12 +18,12 @@ void append_size(std::vector<BenchTarget>& targets, const TickBench& bench, int 
     if (ours == nullptr || fastest == nullptr || cholesky == nullptr) {
         return;
     }
-    targets.push_back({at_columns("times faster than the fastest peer (" + fastest->contender + ")", columns),
+    targets.push_back({at_columns("times faster than the fastest peer (" + fastest->learner + ")", columns),
                        fastest->times.median / ours->times.median, 2, false});
     targets.push_back({at_columns("times faster than Eigen's Cholesky route", columns),
                        cholesky->times.median / ours->times.median, 8, false});
     if (const TickResult* gurls = fastest_of(bench, BenchLearner::Kind::gurls, "double", columns)) {
-        targets.push_back({at_columns("times faster than " + gurls->contender + " (double)", columns),
+        targets.push_back({at_columns("times faster than " + gurls->learner + " (double)", columns),
                            gurls->times.median / ours->times.median, 30, false});
     }
 }

@@ -21,7 +21,7 @@ json times_json(const TickTimes& times) {
 json ticks_json(const TickBench& bench) {
     json all = json::array();
     for (const TickResult& one : bench.ticks) {
-        json entry{{"learner", one.contender},
+        json entry{{"learner", one.learner},
                    {"scalar", one.scalar},
                    {"columns", one.columns},
                    {"error", one.error},

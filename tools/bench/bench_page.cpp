@@ -64,14 +64,14 @@ ReportTable overview(const BenchResults& results, const std::string& scalar) {
     };
     std::vector<std::string> names;
     for (const TickResult& one : results.ticks.ticks) {
-        if (one.scalar == scalar && std::ranges::find(names, one.contender) == names.end()) {
-            names.push_back(one.contender);
+        if (one.scalar == scalar && std::ranges::find(names, one.learner) == names.end()) {
+            names.push_back(one.learner);
         }
     }
     for (const std::string& name : names) {
         add_row(name, [&](int columns) {
             const auto found = std::ranges::find_if(results.ticks.ticks, [&](const TickResult& one) {
-                return one.scalar == scalar && one.contender == name && one.columns == columns;
+                return one.scalar == scalar && one.learner == name && one.columns == columns;
             });
             return found == results.ticks.ticks.end() ? 0 : found->times.median;
         });
@@ -89,7 +89,7 @@ ReportTable overview(const BenchResults& results, const std::string& scalar) {
 ReportTable tick_table(const BenchResults& results) {
     ReportTable table{"Each in detail, µs", with_times({"learner", "scalar", "2d", "error"}), {}, ""};
     for (const TickResult& one : results.ticks.ticks) {
-        std::vector<ReportCell> row{one.contender, one.scalar, static_cast<double>(one.columns),
+        std::vector<ReportCell> row{one.learner, one.scalar, static_cast<double>(one.columns),
                                     rounded_text(one.error) + (one.right ? "" : ", wrong")};
         append_times(row, one.times);
         table.rows.push_back(std::move(row));
@@ -218,7 +218,7 @@ PageChart time_chart(const TickBench& bench) {
     };
     for (const TickResult& one : bench.ticks) {
         if (one.scalar == "float" && one.right) {
-            add(one.contender, one.columns, one.times.median);
+            add(one.learner, one.columns, one.times.median);
         }
     }
     for (const FloorResult& one : bench.floors) {

@@ -118,7 +118,7 @@ void save_learned(const LoopOptions& options, const ControlLoop& loop, FileSet& 
 }
 
 /// Sources of torque in addition to the feedback and the nominal rigid body.
-struct BenchLearner {
+struct ComparedController {
     std::string name;
     bool observer = false;
     bool learned = false;
@@ -131,9 +131,9 @@ bool has_observer(const LoopOptions& options) {
 }
 
 /// Returns the variants that a simulation compares, the complete one last.
-std::vector<BenchLearner> contenders(const LoopOptions& options) {
+std::vector<ComparedController> compared_controllers(const LoopOptions& options) {
     const bool observer = has_observer(options);
-    std::vector<BenchLearner> all{{"nominal", false, false}};
+    std::vector<ComparedController> all{{"nominal", false, false}};
     if (observer) {
         all.push_back({"observer", true, false});
     }
@@ -152,15 +152,15 @@ struct SimulatedRun {
     nlohmann::ordered_json loop;
 };
 
-SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, const BenchLearner& contender,
-                          FileSet& files) {
+SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options,
+                          const ComparedController& controller, FileSet& files) {
     LoopLimits limits = options.limits;
-    if (!contender.observer) {
+    if (!controller.observer) {
         limits.observer_bandwidth = {0};
     }
     ClosedLoop loop(parts.robot, parts.scenario, shown(options.scenario),
-                    contender.learned ? &*parts.model : nullptr, parts.bus ? &*parts.bus : nullptr, limits);
-    const std::string& name = contender.name;
+                    controller.learned ? &*parts.model : nullptr, parts.bus ? &*parts.bus : nullptr, limits);
+    const std::string& name = controller.name;
     LoopRecording recording = make_recording(parts, options);
     Tracking tracking(options.window_s);
     LoopPeaks peaks;
@@ -177,7 +177,7 @@ SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, co
     print_reactions(std::cout, loop.reactions());
     print_peaks(std::cout, peaks);
     show_changes(options, loop.loop(), files);
-    if (contender.name == contenders(options).back().name) {
+    if (controller.name == compared_controllers(options).back().name) {
         save_learned(options, loop.loop(), files);
     }
     SimulatedRun result{std::nullopt, loop_json(name, loop.loop(), peaks)};
@@ -195,8 +195,8 @@ int simulate(const LoopOptions& options) {
     nlohmann::ordered_json loops = nlohmann::ordered_json::array();
     bool stopped = false;
     FileSet files;
-    for (const BenchLearner& contender : contenders(options)) {
-        SimulatedRun run = simulate_run(parts, options, contender, files);
+    for (const ComparedController& controller : compared_controllers(options)) {
+        SimulatedRun run = simulate_run(parts, options, controller, files);
         stopped = stopped || !run.tracking;
         if (run.tracking) {
             runs.push_back(*run.tracking);
@@ -229,7 +229,7 @@ int run_on_bus(const LoopOptions& options) {
     print_peaks(std::cout, log.peaks);
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
-    const std::string name = contenders(options).back().name;
+    const std::string name = compared_controllers(options).back().name;
     FileSet files;
     save_learned(options, *loop, files);
     add_recording(options, name, log.recording, files);

@@ -14,18 +14,18 @@ using namespace dfdyn::tools;
 
 namespace {
 
-void check_all(const Contenders& contenders, const RegressionTask& task) {
+void check_all(const BenchLearners& learners, const RegressionTask& task) {
     constexpr int ticks = 200; // some rows are used twice
     const RegressionTask::Matrix expected = task.batch_predictions(ticks);
-    for (const auto& contender : contenders) {
-        CAPTURE(contender->name(), contender->scalar());
+    for (const auto& learner : learners) {
+        CAPTURE(learner->name(), learner->scalar());
         for (int t = 0; t < ticks; ++t) {
-            contender->tick();
+            learner->tick();
         }
-        CHECK(relative_error(contender->predictions(), expected) <= tolerated_error(contender->scalar()));
-        contender->tick();
+        CHECK(relative_error(learner->predictions(), expected) <= tolerated_error(learner->scalar()));
+        learner->tick();
         // One more row changes the predictions.
-        CHECK(relative_error(contender->predictions(), expected) > 1e-5);
+        CHECK(relative_error(learner->predictions(), expected) > 1e-5);
     }
 }
 
@@ -33,10 +33,10 @@ void check_all(const Contenders& contenders, const RegressionTask& task) {
 
 TEST_CASE("all learners of the benchmark give the predictions of the batch solution") {
     const RegressionTask task(100);
-    const Contenders ours = dfdyn_learners(task);
+    const BenchLearners ours = dfdyn_learners(task);
     CHECK(ours.size() == 2);
     check_all(ours, task);
-    const Contenders others = peers(task);
+    const BenchLearners others = peers(task);
     CHECK(others.size() ==
           4U + (gurls_peer.make ? 1 : 0) + (qrupdate_peer.make ? 2 : 0) + (dlib_peer.make ? 1 : 0));
     check_all(others, task);
@@ -82,9 +82,9 @@ TEST_CASE("the fastest of a kind is the fastest correct one") {
                            result(cholesky, "c", 2, false), result(cholesky, "d", 5, true),
                            result(other, "e", 4, true)},
                           {}};
-    CHECK(find_ours(bench, "float", 100)->contender == "a");
-    CHECK(fastest_peer(bench, "float", 100)->contender == "b");
-    CHECK(fastest_of(bench, cholesky, "float", 100)->contender == "d");
+    CHECK(find_ours(bench, "float", 100)->learner == "a");
+    CHECK(fastest_peer(bench, "float", 100)->learner == "b");
+    CHECK(fastest_of(bench, cholesky, "float", 100)->learner == "d");
     CHECK(fastest_peer(bench, "double", 100) == nullptr);
     CHECK(find_floor(bench, "float", 100) == nullptr);
 }

@@ -31,14 +31,14 @@ class BenchLearner : public Ticking {
     Kind kind_;
 };
 
-using Contenders = std::vector<std::unique_ptr<BenchLearner>>;
+using BenchLearners = std::vector<std::unique_ptr<BenchLearner>>;
 
 /// Returns the firmware's learner with sizes known at compile time: 100, 200, 500, 1000 in float and double,
 /// 2000 in float.
-Contenders dfdyn_learners(const RegressionTask& task);
+BenchLearners dfdyn_learners(const RegressionTask& task);
 
 /// Returns the alternative learners that were available when this program was built.
-Contenders peers(const RegressionTask& task);
+BenchLearners peers(const RegressionTask& task);
 
 /// Returns one line about each learner that is not measured, and the reason.
 std::vector<std::string> missing_peers();
@@ -50,7 +50,7 @@ const std::vector<int>& contender_columns();
 /// peers.cpp.
 struct Peer {
     /// Returns its learners for the task; null if the library was not available when this program was built.
-    Contenders (*make)(const RegressionTask& task);
+    BenchLearners (*make)(const RegressionTask& task);
     /// What is not measured, and the reason; null if nothing is missing.
     const char* missing = nullptr;
 };

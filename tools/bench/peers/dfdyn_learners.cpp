@@ -34,8 +34,8 @@ class OurContender final : public TypedLearner<Scalar> {
 };
 
 template <int p, class... Scalar>
-Contenders of_size(const RegressionTask& task) {
-    Contenders all;
+BenchLearners of_size(const RegressionTask& task) {
+    BenchLearners all;
     (all.push_back(std::make_unique<OurContender<Scalar, p>>(task)), ...);
     return all;
 }
@@ -47,7 +47,7 @@ const std::vector<int>& contender_columns() {
     return sizes;
 }
 
-Contenders dfdyn_learners(const RegressionTask& task) {
+BenchLearners dfdyn_learners(const RegressionTask& task) {
     switch (task.columns()) {
     case 100:
         return of_size<100, float, double>(task);

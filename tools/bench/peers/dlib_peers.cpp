@@ -39,7 +39,7 @@ class DlibRls final : public TypedLearner<double> {
 } // namespace
 
 const Peer dlib_peer{[](const RegressionTask& task) {
-    Contenders one;
+    BenchLearners one;
     if (task.columns() <= 500) { // larger sizes take many milliseconds per tick
         one.push_back(std::make_unique<DlibRls>(task));
     }

@@ -62,7 +62,7 @@ class EigenCholesky final : public EigenContender<Scalar> {
 } // namespace
 
 const Peer eigen_peer{[](const RegressionTask& task) {
-    Contenders all;
+    BenchLearners all;
     all.push_back(std::make_unique<EigenCovariance<float>>(task));
     all.push_back(std::make_unique<EigenCovariance<double>>(task));
     all.push_back(std::make_unique<EigenCholesky<float>>(task));

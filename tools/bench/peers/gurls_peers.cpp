@@ -77,7 +77,7 @@ void keep_blas_on_one_core() {
 }
 
 const Peer gurls_peer{[](const RegressionTask& task) {
-                          Contenders one;
+                          BenchLearners one;
                           one.push_back(std::make_unique<RecursiveCholesky>(task));
                           return one;
                       },

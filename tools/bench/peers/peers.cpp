@@ -13,9 +13,9 @@ constexpr std::array<const Peer*, 4> all_peers{&eigen_peer, &gurls_peer, &qrupda
 
 } // namespace
 
-Contenders peers(const RegressionTask& task) {
+BenchLearners peers(const RegressionTask& task) {
     keep_blas_on_one_core();
-    Contenders all;
+    BenchLearners all;
     for (const Peer* const peer : all_peers) {
         if (peer->make != nullptr) {
             std::ranges::move(peer->make(task), std::back_inserter(all));

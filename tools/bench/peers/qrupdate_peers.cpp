@@ -58,7 +58,7 @@ class Qrupdate final : public EigenContender<Scalar> {
 } // namespace
 
 const Peer qrupdate_peer{[](const RegressionTask& task) {
-    Contenders both;
+    BenchLearners both;
     both.push_back(std::make_unique<Qrupdate<float>>(task));
     both.push_back(std::make_unique<Qrupdate<double>>(task));
     return both;

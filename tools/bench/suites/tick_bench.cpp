@@ -8,13 +8,13 @@ namespace dfdyn::tools {
 
 namespace {
 
-TickResult verify(BenchLearner& contender, const RegressionTask::Matrix& expected, int columns) {
+TickResult verify(BenchLearner& learner, const RegressionTask::Matrix& expected, int columns) {
     for (int i = 0; i < verified_ticks; ++i) {
-        contender.tick();
+        learner.tick();
     }
-    TickResult result{contender.name(), contender.scalar(), contender.kind(), columns, 0, false, {}};
-    result.error = relative_error(contender.predictions(), expected);
-    result.right = result.error <= tolerated_error(contender.scalar());
+    TickResult result{learner.name(), learner.scalar(), learner.kind(), columns, 0, false, {}};
+    result.error = relative_error(learner.predictions(), expected);
+    result.right = result.error <= tolerated_error(learner.scalar());
     return result;
 }
 
@@ -22,21 +22,21 @@ TickResult verify(BenchLearner& contender, const RegressionTask::Matrix& expecte
 void run_size(TickBench& bench, int columns, bool with_peers, const RepetitionOptions& options,
               MultiplyAddProbe& probe, const std::function<void(double)>& on_share_done) {
     const RegressionTask task(columns);
-    Contenders contenders = dfdyn_learners(task);
+    BenchLearners learners = dfdyn_learners(task);
     std::vector<std::string> scalars;
-    for (const auto& ours : contenders) {
+    for (const auto& ours : learners) {
         scalars.push_back(ours->scalar());
     }
     if (with_peers) {
-        std::ranges::move(peers(task), std::back_inserter(contenders));
+        std::ranges::move(peers(task), std::back_inserter(learners));
     }
     const RegressionTask::Matrix expected = task.batch_predictions(verified_ticks);
     std::vector<TickResult> results;
     std::vector<Ticking*> subjects;
-    for (const auto& contender : contenders) {
-        results.push_back(verify(*contender, expected, columns));
+    for (const auto& learner : learners) {
+        results.push_back(verify(*learner, expected, columns));
         if (results.back().right) {
-            subjects.push_back(contender.get());
+            subjects.push_back(learner.get());
         }
     }
     std::vector<std::unique_ptr<Ticking>> passes;

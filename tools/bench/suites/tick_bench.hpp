@@ -10,7 +10,7 @@ namespace dfdyn::tools {
 
 /// Result of one learner at one size.
 struct TickResult {
-    std::string contender, scalar;
+    std::string learner, scalar;
     BenchLearner::Kind kind = BenchLearner::Kind::other;
     int columns = 0;
     double error = 0; ///< of its predictions after some ticks, relative to the batch solution and its rms
