@@ -58,7 +58,8 @@ class JointController {
                               .ticks_per_sample = ticks_per_sample,
                               .limit = all(gains.limit),
                               .cap = all(0.5F * gains.limit),
-                              .rate = all(20 * gains.limit)}),
+                              .rate = all(20 * gains.limit),
+                              .bandwidth = all(gains.bandwidth)}),
           observer_({}, {1e-9F * period_ns, all(gains.bandwidth), all(0.3F * gains.limit)}) {}
 
     /// Starts the controller. The arm rests at the beginning of the reference.

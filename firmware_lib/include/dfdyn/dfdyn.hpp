@@ -9,6 +9,7 @@
 #include "dfdyn/control/disturbance_observer.hpp"
 #include "dfdyn/control/feed_forward.hpp"
 #include "dfdyn/control/learned_torque.hpp"
+#include "dfdyn/control/learner_pair.hpp"
 #include "dfdyn/control/loop_margin.hpp"
 #include "dfdyn/core/snapshot_writer.hpp"
 #include "dfdyn/estimator.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/control/feed_forward.hpp"
 
+#include "dfdyn/control/learner_pair.hpp"
 #include "tests/firmware_lib/control/joint.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
@@ -25,6 +26,8 @@ constexpr int ticks_per_sample = 4;
 struct ToldLearner {
     using Scalar = double;
     static constexpr int outputs = 1;
+    static constexpr int forecasts = 1;
+    [[nodiscard]] static constexpr Extent<1> forecast_count() noexcept { return {}; }
 
     [[nodiscard]] static constexpr Extent<1> output_count() noexcept { return {}; }
     void begin(std::int64_t /*time_ns*/, const double* position) { began_at = *position; }
@@ -170,6 +173,89 @@ TEST_CASE("a missing position is not learned") {
         run.forward.measured(0, nullptr, nullptr);
     }
     CHECK(run.learner.learned.size() == learned);
+}
+
+/// Two learners in a loop whose final command is 50 N·m, with a nominal torque of 10 N·m.
+struct PairRun {
+    using Pair = LearnerPair<ToldLearner, ToldLearner>;
+
+    ToldLearner first, second;
+    Pair pair{first, second};
+    FeedForward<Pair> forward{pair, {period_ns, ticks_per_sample, {{100}}, {{90}}, {{2000}}}};
+    double last = 0;
+    double largest_step = 0;
+
+    PairRun() {
+        constexpr double start = 0;
+        forward.begin(0, &start);
+    }
+
+    void go(double seconds) {
+        largest_step = 0;
+        for (auto tick = std::llround(seconds / period_s); tick > 0; --tick) {
+            constexpr double nominal = 10;
+            constexpr double needed = 50;
+            const double torque = forward.update({}, &nominal)[0];
+            forward.commanded(&needed);
+            forward.measured(0, &nominal, &needed);
+            largest_step = std::max(largest_step, std::abs(torque - last));
+            last = torque;
+        }
+    }
+};
+
+TEST_CASE("of two learners the more accurate one is used, and they are exchanged without a step") {
+    PairRun run;
+    run.first.forecast = 50;
+    run.second.forecast = -30;
+    run.go(3);
+    CHECK(run.last == Approx(50).margin(0.1));
+    CHECK(run.first.learned.size() == run.second.learned.size());
+    run.first.forecast = -30;
+    run.second.forecast = 50;
+    run.go(0.1); // the step of the forecast itself
+    run.go(6);
+    CHECK(run.last == Approx(50).margin(0.1));
+    CHECK(run.largest_step <= 2 * 80 * period_s / 0.2); // both the share and the mixture change
+}
+
+TEST_CASE("where one learner has no prediction the other one's is used at once") {
+    for (const bool first_is_used : {true, false}) {
+        PairRun run;
+        ToldLearner& used = first_is_used ? run.first : run.second;
+        ToldLearner& other = first_is_used ? run.second : run.first;
+        used.forecast = 50;
+        other.forecast = 0;
+        run.go(3);
+        other.forecast = 50;
+        used.knows = false;
+        run.go(0.02);
+        CHECK(run.last == Approx(50).margin(0.5));
+        other.knows = false;
+        run.go(1);
+        CHECK(run.last == Approx(10));
+    }
+}
+
+TEST_CASE("with an observer a fast error of a forecast counts more than a slow one") {
+    const auto share_with = [](double bandwidth) {
+        Forward::Settings with_observer = settings;
+        with_observer.bandwidth = {{bandwidth}};
+        ToldLearner learner;
+        Forward forward(learner, with_observer);
+        constexpr double nominal = 10;
+        constexpr double needed = 50;
+        forward.begin(0, &nominal);
+        for (int tick = 0; tick < 2000; ++tick) { // the forecast is wrong by ±40 N·m, by ±20 in the tick
+            learner.forecast = needed + (tick / ticks_per_sample % 2 == 0 ? 40 : -40);
+            forward.update({}, &nominal);
+            forward.commanded(&needed);
+            forward.measured(0, &nominal, &needed);
+        }
+        return forward.share()[0];
+    };
+    CHECK(share_with(0) > 0.9);
+    CHECK(share_with(20) < 0.2);
 }
 
 /// A joint under feedback and feed-forward that has to hold a load, tick by tick.

@@ -12,29 +12,39 @@
 
 namespace dfdyn {
 
-/// A learner that `FeedForward` can use; `LearnedTorque` documents the calls.
+/// A learner that `FeedForward` can use; `LearnedTorque` documents the calls. `predict` writes
+/// `forecast_count()` forecasts of n torques, one after the other.
 template <class L>
 concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename L::Scalar* values,
                                  typename L::Scalar* torque) {
     { L::outputs } -> std::convertible_to<int>;
+    { L::forecasts } -> std::convertible_to<int>;
     learner.begin(time_ns, values);
     learner.learn(time_ns, values, values);
     learner.go_on();
     { learner.predict(time_ns, values, torque) } -> std::same_as<bool>;
+    {
+        int { learner.forecast_count() }
+        } -> std::same_as<int>;
 };
 
 /// Feed-forward torque for a reference: a blend of the caller's nominal torque and a learned torque.
 ///
 /// Once per sample period of its model (a *knot*) the learner predicts the torque of the next knot, for the
-/// reference extrapolated at constant acceleration. Between knots the torque is interpolated. `commanded`
-/// compares both forecasts with the torque that was finally commanded, per joint and knot. The forecasts are
-/// combined as in `ForecastCombination`, over the last second. The command contains the feedback, so the
-/// comparison includes the tracking error and needs no torque sensor. Errors that change faster than the
-/// feedback can follow do not appear in the command and are not detected. Until one second of comparisons is
-/// available, only the nominal torque is used.
+/// reference extrapolated at constant acceleration: one or more forecasts. Between knots the torque is
+/// interpolated. `commanded` compares all forecasts, and the nominal torque, with the torque that was finally
+/// commanded, per joint and knot. They are combined as in `ForecastCombination`, over the last `memory_s`.
+/// The command contains the feedback, so the comparison includes the tracking error and needs no torque
+/// sensor. Errors that change faster than the feedback can follow do not appear in the command and are not
+/// detected. Until `memory_s` of comparisons is available, only the nominal torque is used.
 ///
-/// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`. It adds
-/// at most `cap` to the nominal torque and changes at most at `rate`. The total stays within `limit`.
+/// A `DisturbanceObserver` takes over slow errors of a forecast, and leaves fast ones as tracking error. With
+/// its bandwidth in the settings, each error is therefore high-pass filtered with this bandwidth before it is
+/// compared, and its slow part counts with the share `slow_share` only.
+///
+/// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`, and the
+/// shares of the forecasts within it change in `fall_s`. It adds at most `cap` to the nominal torque and
+/// changes at most at `rate`. The total stays within `limit`.
 ///
 ///     begin(now, position);                              // the arm rests at the reference's start
 ///     each control tick:
@@ -43,14 +53,16 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 ///         measured(time, position, torque that was in effect then);   // nullptr if unknown
 ///
 /// Learn from the command that was in effect when the position was read rather than from a torque sensor:
-/// offset and scale errors of a sensor then have no effect. Cost per tick: the learner's, plus 20 n
-/// multiply-adds at a knot and 12 n otherwise.
+/// offset and scale errors of a sensor then have no effect. Cost per tick: the learner's, plus at
+/// most 25 n multiply-adds per compared torque at a knot and 12 n otherwise.
 template <TorqueLearner Learner>
 class FeedForward {
   public:
     using Scalar = typename Learner::Scalar;   ///< float or double
     static constexpr int n = Learner::outputs; ///< joints; each has one torque
     using Torques = Storage<Scalar, n>;        ///< n values, N·m (N for prismatic joints)
+    /// Number of forecasts of the learner, each with n torques.
+    static constexpr int forecasts = Learner::forecasts;
 
     /// Limits and times. A value outside its range is not detected.
     struct Settings {
@@ -62,6 +74,10 @@ class FeedForward {
         Scalar rise_s = Scalar(0.5); ///< time in which the learned share rises from 0 to 1, s, > 0
         Scalar fall_s = Scalar(0.2); ///< time in which it falls from 1 to 0, s, > 0
         Scalar memory_s = 1;         ///< memory of the comparison, ≥ one sample period
+        /// Weight of the error that the observer takes over, 0 … 1. Chosen on the iCub's arm with tripled
+        /// friction and on motions of both arms that stop and go: 0 suits these, 1 the former.
+        Scalar slow_share = Scalar(0.3);
+        Torques bandwidth{}; ///< of the disturbance observer, rad/s, ≥ 0; 0: none
     };
 
     /// Ticks by which the interpolation leads. A command is held for a tick, so on average it acts half a
@@ -72,11 +88,16 @@ class FeedForward {
     /// Refers to `learner`, which must outlive this object; copies `settings`. Call `begin` before the first
     /// `update`.
     explicit FeedForward(Learner& learner, const Settings& settings) noexcept
-        : learner_(&learner), joints_(learner.output_count()), settings_(settings),
+        : learner_(&learner), joints_(learner.output_count()), forecast_count_(learner.forecast_count()),
+          settings_(settings),
           judged_for_(std::max(1, static_cast<int>(settings.memory_s / sample_period_s(settings)))),
-          combination_(Extent<2>{}, joints_, settings.memory_s / sample_period_s(settings)),
-          forecasts_(Forecasts::zeros(extent<product(2, n)>(2 * joints_))), from_(Torques::zeros(joints_)),
-          to_(from_), ahead_(from_), share_(from_), part_(from_), torque_(from_) {}
+          combination_(extent<sum(forecasts, 1)>(forecast_count_ + 1), joints_,
+                       settings.memory_s / sample_period_s(settings)),
+          compared_(Compared::zeros(extent<product(sum(forecasts, 1), n)>((forecast_count_ + 1) * joints_))),
+          slow_(compared_), error_(compared_),
+          from_(Forecasts::zeros(extent<product(forecasts, n)>(forecast_count_ * joints_))), to_(from_),
+          mix_(from_), ahead_(Torques::zeros(joints_)), share_(ahead_), part_(ahead_), torque_(ahead_),
+          zero_(ahead_) {}
 
     /// Starts a motion. The arm rests at `position` (n values, rad).
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
@@ -88,6 +109,8 @@ class FeedForward {
         for (int k = 0; k < joints_; ++k) {
             share_[k] = part_[k] = 0;
         }
+        std::fill(mix_.begin(), mix_.end(), Scalar(1) / static_cast<Scalar>(int{forecast_count_}));
+        std::fill(slow_.begin(), slow_.end(), Scalar(0));
         known_ = next_known_ = false;
     }
 
@@ -107,13 +130,14 @@ class FeedForward {
                                         static_cast<Scalar>(settings_.ticks_per_sample),
                                     Scalar(1));
         for (int k = 0; k < joints_; ++k) {
-            const Scalar learned = from_[k] + way * (to_[k] - from_[k]);
             const Scalar known_nominal = bounded(nominal[k], settings_.limit[k]);
-            torque_[k] = with_learned(k, known_nominal, learned);
             if (since_knot == 0) {
-                forecasts_[k] = known_nominal;
-                forecasts_[joints_ + k] = learned;
+                compared_[k] = known_nominal;
+                for (int i = k; i < from_.size(); i += joints_) {
+                    compared_[joints_ + i] = from_[i] + way * (to_[i] - from_[i]);
+                }
             }
+            torque_[k] = with_learned(k, known_nominal, way);
         }
         at_knot_ = since_knot == 0;
         return torque_;
@@ -126,12 +150,19 @@ class FeedForward {
         if (!at_knot_ || !known_) {
             return;
         }
-        for (int i = 0; i < 2 * joints_; ++i) {
-            if (!std::isfinite(forecasts_[i]) || !std::isfinite(torque[i % joints_])) {
+        for (int i = 0; i < compared_.size(); ++i) {
+            if (!std::isfinite(compared_[i]) || !std::isfinite(torque[i % joints_])) {
                 return;
             }
         }
-        combination_.learn(forecasts_.data(), torque);
+        for (int i = 0; i < compared_.size(); ++i) {
+            const int k = i % joints_;
+            const Scalar followed = std::min(settings_.bandwidth[k] * sample_period_s(settings_), Scalar(1));
+            const Scalar error = compared_[i] - torque[k];
+            error_[i] = error - (1 - settings_.slow_share) * slow_[i];
+            slow_[i] += followed * (error - slow_[i]);
+        }
+        combination_.learn(error_.data(), zero_.data());
         judged_ = std::min(judged_ + 1, judged_for_);
     }
 
@@ -155,7 +186,8 @@ class FeedForward {
     [[nodiscard]] const Learner& learner() const noexcept { return *learner_; }
 
   private:
-    using Forecasts = Storage<Scalar, product(2, n)>;
+    using Forecasts = Storage<Scalar, product(forecasts, n)>;
+    using Compared = Storage<Scalar, product(sum(forecasts, 1), n)>;
 
     static constexpr Scalar sample_period_s(const Settings& settings) noexcept {
         return Scalar(1e-9) * static_cast<Scalar>(settings.period_ns) *
@@ -173,21 +205,43 @@ class FeedForward {
         knot_ns_ += settings_.period_ns * settings_.ticks_per_sample;
         for (int k = 0; k < joints_; ++k) {
             ahead_[k] = position_after(reference, k, sample_period_s(settings_));
-            from_[k] = to_[k];
         }
+        from_ = to_;
         known_ = next_known_;
         next_known_ = learner_->predict(knot_ns_, ahead_.data(), to_.data());
     }
 
-    /// Returns the share that the forecast combination assigns to the learner.
+    /// Returns the share that the forecast combination assigns to all forecasts of the learner.
     [[nodiscard]] Scalar earned_share(int k) const noexcept {
         const bool trusted = enabled_ && known_ && next_known_ && judged_ >= judged_for_;
-        return trusted ? combination_.weights()[joints_ + k] : Scalar(0);
+        return trusted ? 1 - combination_.weights()[k] : Scalar(0);
     }
 
-    Scalar with_learned(int k, Scalar nominal, Scalar learned) noexcept {
+    /// Moves the forecasts' shares within the learned part of joint `k` towards those that they earned.
+    void mix(int k) noexcept {
+        const Scalar* const earned = combination_.weights() + joints_;
+        Scalar total = 0;
+        Scalar farthest = 0;
+        for (int i = k; i < mix_.size(); i += joints_) {
+            total += earned[i];
+        }
+        for (int i = k; total > 0 && i < mix_.size(); i += joints_) {
+            farthest = std::max(farthest, std::abs(earned[i] / total - mix_[i]));
+        }
+        const Scalar step = std::min(Scalar(1), period_s() / settings_.fall_s / farthest);
+        for (int i = k; farthest > 0 && i < mix_.size(); i += joints_) {
+            mix_[i] += step * (earned[i] / total - mix_[i]);
+        }
+    }
+
+    Scalar with_learned(int k, Scalar nominal, Scalar way) noexcept {
         const Scalar step = earned_share(k) - share_[k];
         share_[k] += std::clamp(step, -period_s() / settings_.fall_s, period_s() / settings_.rise_s);
+        mix(k);
+        Scalar learned = 0;
+        for (int i = k; i < mix_.size(); i += joints_) {
+            learned += mix_[i] * (from_[i] + way * (to_[i] - from_[i]));
+        }
         const Scalar beyond =
             known_ && next_known_ ? bounded(learned - nominal, settings_.cap[k]) : Scalar(0);
         const Scalar most = settings_.rate[k] * period_s();
@@ -197,13 +251,17 @@ class FeedForward {
 
     Learner* learner_;
     [[no_unique_address]] Extent<n> joints_;
+    [[no_unique_address]] Extent<forecasts> forecast_count_;
     Settings settings_;
     int judged_for_; ///< knots with a comparison until the learner is used
-    ForecastCombination<Scalar, 2, n> combination_;
-    Forecasts forecasts_; ///< for the present knot: the nominal torque, then the learned one
-    Torques from_, to_;   ///< learned torque of the present and of the next knot
+    ForecastCombination<Scalar, sum(forecasts, 1), n> combination_;
+    Compared compared_;     ///< torques of the present knot: the nominal ones, then the forecasts
+    Compared slow_, error_; ///< their errors, low-pass filtered, and as they are compared
+    Forecasts from_, to_;   ///< forecasts for the present and for the next knot
+    Forecasts mix_;         ///< shares of the forecasts in the learned part
     Torques ahead_;
     Torques share_, part_, torque_;
+    Torques zero_;
     std::int64_t knot_ns_ = 0; ///< time of the next knot
     std::int64_t tick_ = 0;
     int judged_ = 0;

@@ -28,6 +28,7 @@ class LearnedTorque {
     using Scalar = typename Model::Scalar;         ///< float or double
     using Estimator = dfdyn::Estimator<Model>;     ///< learns from the measured motion
     static constexpr int outputs = Model::outputs; ///< n: one torque per joint
+    static constexpr int forecasts = 1;            ///< torques of a joint that `predict` writes
     static_assert(Model::joints == Model::outputs, "outputs must be the torques of all joints");
     static_assert(Model::outputs != dynamic, "sizes must be fixed at compile time");
 
@@ -42,6 +43,8 @@ class LearnedTorque {
 
     /// Returns the number of torques, n.
     [[nodiscard]] Extent<outputs> output_count() const noexcept { return constants_->sizes.output_count; }
+    /// Returns the number of forecasts, 1.
+    [[nodiscard]] static constexpr Extent<forecasts> forecast_count() noexcept { return {}; }
 
     /// Starts both windows as if the arm had rested at `position` (n values, rad) for a long time. What has
     /// been learned stays.

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/control/feed_forward.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <type_traits>
+
+namespace dfdyn {
+
+/// Two learners of the same joints as one `TorqueLearner` with the forecasts of both, among which
+/// `FeedForward` chooses. For example, model SPK with a memory of many seconds, and model P with a memory of
+/// a second and an innovation patience of 0: P is right soon after a change of the arm, SPK is better in
+/// between.
+///
+/// Refers to both learners, which must outlive it and have the same sample period. The cost of a tick is the
+/// sum of both. Never allocates.
+template <TorqueLearner First, TorqueLearner Second>
+class LearnerPair {
+  public:
+    using Scalar = typename First::Scalar;                                     ///< float or double
+    static constexpr int outputs = First::outputs;                             ///< n: one torque per joint
+    static constexpr int forecasts = sum(First::forecasts, Second::forecasts); ///< of both
+    static_assert(std::is_same_v<Scalar, typename Second::Scalar> && outputs == Second::outputs,
+                  "both learners must have the same joints and scalar");
+
+    /// Refers to `first` and `second`.
+    LearnerPair(First& first, Second& second) noexcept : first_(&first), second_(&second) {}
+
+    /// Returns the number of torques of a forecast, n.
+    [[nodiscard]] Extent<outputs> output_count() const noexcept { return first_->output_count(); }
+    /// Returns the number of forecasts.
+    [[nodiscard]] Extent<forecasts> forecast_count() const noexcept {
+        return extent<forecasts>(first_->forecast_count() + second_->forecast_count());
+    }
+
+    /// See `LearnedTorque::begin`.
+    void begin(std::int64_t time_ns, const Scalar* position) noexcept {
+        first_->begin(time_ns, position);
+        second_->begin(time_ns, position);
+    }
+    /// See `LearnedTorque::learn`; the counters of the learners show what was refused.
+    void learn(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
+        first_->learn(time_ns, position, torque);
+        second_->learn(time_ns, position, torque);
+    }
+    /// Continues to learn the sample. Call it in every control tick without a new sample.
+    void go_on() noexcept {
+        first_->go_on();
+        second_->go_on();
+    }
+
+    /// Writes the forecasts of both, `forecasts` times n torques. If one learner has none, its forecasts are
+    /// those of the other. Returns false if neither has one.
+    bool predict(std::int64_t time_ns, const Scalar* position, Scalar* torque) noexcept {
+        const int size = first_->forecast_count() * output_count();
+        Scalar* const second = torque + size;
+        const bool first_known = first_->predict(time_ns, position, torque);
+        const bool second_known = second_->predict(time_ns, position, second);
+        if (!first_known && second_known) {
+            std::copy_n(second, size, torque);
+        } else if (first_known && !second_known) {
+            std::copy_n(torque, size, second);
+        }
+        return first_known || second_known;
+    }
+
+  private:
+    static_assert(First::forecasts == Second::forecasts, "both learners must have equally many forecasts");
+
+    First* first_;
+    Second* second_;
+};
+
+} // namespace dfdyn
