@@ -73,11 +73,11 @@ Recording commissioning(const Setting& setting) {
     return recording;
 }
 
-LoopModel trained(const Setting& setting) {
+LoopModel trained(const Setting& setting, int features = 30) {
     ModelTraining training;
     TrainingOptions& options = training.options;
     options.model = &structures::SPK;
-    options.feature_count = 30;
+    options.feature_count = features;
     options.likelihood_rows = 200;
     options.starts = 2;
     options.refinement_evaluations = 0;
@@ -164,6 +164,27 @@ void check_fault(const Setting& arm, const LoopModel& model, double largest_rad_
     }
 }
 
+/// Checks every second later than the one after a change at 40 s, on the motions of `seeds`.
+void check_later_seconds(Setting arm, const LoopModel& model, const std::vector<std::uint64_t>& seeds,
+                         double largest_rad) {
+    for (const std::uint64_t seed : seeds) {
+        arm.scenario.seed = seed;
+        const std::vector<TrackingWindow> learned = tracked(arm, "learned", &model, {}, 48.001, 1).windows;
+        REQUIRE(learned.size() == 48);
+        for (std::size_t second = 41; second < learned.size(); ++second) {
+            CAPTURE(seed, second, learned[second].all);
+            CHECK(learned[second].all < largest_rad);
+        }
+    }
+}
+
+/// The arm without the payload that is attached at 65 s, with another one from 40 s on.
+Setting with_load(Setting arm, double mass_kg) {
+    arm.scenario.payloads.at(1).attached_s = 40;
+    arm.scenario.payloads.at(1).mass = mass_kg;
+    return arm;
+}
+
 } // namespace
 
 TEST_CASE("the UR5 in a loop with an untrained model tracks twenty times better after a minute") {
@@ -196,6 +217,25 @@ TEST_CASE("after friction has tripled the iCub's arm tracks within 3 mrad a seco
     const LoopModel model = trained(arm);
     arm.scenario.faults = with_fault(ur5_loop(), "friction_step").faults;
     check_fault(arm, model, 3e-3);
+}
+
+TEST_CASE(
+    "with more features and on other motions the iCub's arm tracks within 3 mrad a second after friction "
+    "has tripled") {
+    Setting arm = icub_loop();
+    const LoopModel model = trained(arm, 60);
+    arm.scenario.faults = with_fault(ur5_loop(), "friction_step").faults;
+    check_later_seconds(arm, model, {31, 2101}, 3e-3);
+}
+
+TEST_CASE("a second after a load of 3 kg the UR5 tracks within 3 mrad") {
+    const Setting arm = ur5_loop();
+    check_later_seconds(with_load(arm, 3), trained(arm), {12, 2101}, 3e-3);
+}
+
+TEST_CASE("a second after a load of 0.75 kg the iCub's arm tracks within 3 mrad") {
+    const Setting arm = icub_loop();
+    check_later_seconds(with_load(arm, 0.75), trained(arm), {12, 2101}, 3e-3);
 }
 
 TEST_CASE(

@@ -25,7 +25,8 @@ JointVector joint_vector(const Torques& values) {
 
 FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                          std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
-                         const JointVector& limit, const JointVector& learned_limit)
+                         const JointVector& limit, const JointVector& learned_limit,
+                         const JointVector& bandwidth)
     : dynamics_(nominal, rotor_inertia), knot_ticks_(knot_ticks), cap_(learned_limit), period_s_(period_s),
       compensation_(JointVector::Zero(limit.size())), wanted_compensation_(compensation_),
       inertia_(JointVector::Zero(dynamics_.joint_count())) {
@@ -36,7 +37,8 @@ FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                                                 .ticks_per_sample = knot_ticks,
                                                 .limit = torques(limit),
                                                 .cap = torques(cap_),
-                                                .rate = torques(limit / full_scale_s)});
+                                                .rate = torques(limit / full_scale_s),
+                                                .bandwidth = torques(bandwidth)});
         reference_ = {torques(inertia_), torques(inertia_), torques(inertia_)};
     }
 }

@@ -18,9 +18,10 @@ class FeedForward {
   public:
     /// `learned`: an optional model; `knot_ticks`: ticks of its sample period. `limit`: of each joint's
     /// torque, N·m; `learned_limit`: of the learned torque in addition to the nominal rigid body.
+    /// `bandwidth`: of the loop's disturbance observer, rad/s per joint; 0: none.
     FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                 std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
-                const JointVector& limit, const JointVector& learned_limit);
+                const JointVector& limit, const JointVector& learned_limit, const JointVector& bandwidth);
 
     /// Enables or disables the learned torque, without a step. Learning continues in both states.
     void enable_learned(bool on) noexcept;

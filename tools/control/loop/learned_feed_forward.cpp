@@ -3,6 +3,7 @@
 
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/replay/replay.hpp"
 
 #include <algorithm>
@@ -35,10 +36,31 @@ TrainedModel impatient(TrainedModel model) {
     return model;
 }
 
+/// Returns model P of the physics of a model with features. What the features would explain is noise for it,
+/// of their prior variance. Every sample is learned, because the memory is short.
+TrainedModel physics_of(TrainedModel model) {
+    const double noise_factor = std::sqrt(1 + model.outputs.prior_variance);
+    for (double& noise : model.outputs.noise_std) {
+        noise *= noise_factor;
+    }
+    const auto parameters = static_cast<double>(model.physics->selected.size());
+    model.structure = structures::P.name;
+    model.features = {};
+    model.extrapolation.reset();
+    model.forgetting_factor =
+        std::max(1 - model.sample_period_s / LearnedFeedForward::physics_memory_s, 1 - 1 / parameters);
+    model.limits.innovation_patience = 0;
+    return model;
+}
+
 /// Budget of one slice that suffices to learn a sample in `ticks` slices. Each slice may leave up to its
 /// largest indivisible step unused.
 Budget share_of(const Cost& cost, int ticks) {
     return {(cost.learn + cost.forget + ticks - 1) / ticks + cost.largest_step};
+}
+
+bool learns(const Status& status) {
+    return status.learned() || status.learning == Reason::learning_in_progress;
 }
 
 } // namespace
@@ -49,27 +71,40 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
     : sample_period_ns_(std::llround(model.sample_period_s * 1e9)),
       lags_(std::max(model.input.lags, model.physics ? model.physics->motion.lags : 0)) {
     check_model(model, joints, source);
-    learner_ = make_estimator(impatient(model), from_prior);
+    std::unique_ptr<RuntimeEstimator>& estimator = learner_.estimator;
+    estimator = make_estimator(impatient(model), from_prior);
     if (monitor != nullptr) {
-        auto watched = monitored(std::move(learner_), *monitor);
+        auto watched = monitored(std::move(estimator), *monitor);
         monitor_ = watched.get();
-        learner_ = std::move(watched);
+        estimator = std::move(watched);
     }
     if (contact != nullptr) {
-        auto watched = with_contacts(std::move(learner_), *contact);
+        auto watched = with_contacts(std::move(estimator), *contact);
         contacts_ = watched.get();
-        learner_ = std::move(watched);
+        estimator = std::move(watched);
     }
     follower_ = make_estimator(model, from_prior);
-    share_ = share_of(learner_->cost(), ticks);
-    weights_.resize(learner_->weight_count());
-    learner_->copy_weights(weights_);
+    if (structure_of(model).coupled()) {
+        physics_.emplace().estimator = make_estimator(physics_of(model), true);
+    }
+    const auto prepare = [&](Learner& one) {
+        one.share = share_of(one.estimator->cost(), ticks);
+        one.weights.resize(follower_->weight_count());
+        one.take_over();
+    };
+    prepare(learner_);
+    if (physics_) {
+        prepare(*physics_);
+    }
     prediction_.resize(static_cast<std::size_t>(joints));
 }
 
 void LearnedFeedForward::begin(std::int64_t time_ns, const double* position) {
     begin_ns_ = time_ns;
-    learner_->begin_recording();
+    learner_.estimator->begin_recording();
+    if (physics_) {
+        physics_->estimator->begin_recording();
+    }
     follower_->begin_recording();
     for (int lag = lags_; lag >= 0; --lag) {
         follower_->tick({time_ns - lag * sample_period_ns_, of_joints(position), {}, {}, {}});
@@ -78,12 +113,15 @@ void LearnedFeedForward::begin(std::int64_t time_ns, const double* position) {
 
 void LearnedFeedForward::learn(std::int64_t time_ns, const double* position, const double* torque) {
     const std::span<const double> output = torque != nullptr ? of_joints(torque) : std::span<const double>();
-    const Status status = learner_->tick({time_ns, of_joints(position), {}, {}, output}, share_).status;
+    const MeasuredSample sample{time_ns, of_joints(position), {}, {}, output};
+    const Status status = learner_.learn(sample);
+    if (physics_) { // does not learn a contact, either
+        physics_->learn(contact_joint() < 0 ? sample
+                                            : MeasuredSample{time_ns, of_joints(position), {}, {}, {}});
+    }
     counters_.samples += torque != nullptr ? 1 : 0;
-    if (status.learned() || status.learning == Reason::learning_in_progress) {
+    if (learns(status)) {
         ++counters_.learned;
-        in_progress_ = true;
-        take_over();
     } else if (is_fault(status.reason())) {
         ++counters_.faults;
         counters_.last_fault = status.reason();
@@ -99,41 +137,74 @@ RecordedChanges LearnedFeedForward::changes() const {
 }
 
 void LearnedFeedForward::go_on() {
-    if (in_progress_) {
-        learner_->advance(share_);
+    learner_.go_on();
+    if (physics_) {
+        physics_->go_on();
+    }
+}
+
+Status LearnedFeedForward::Learner::learn(const MeasuredSample& sample) {
+    const Status status = estimator->tick(sample, share).status;
+    if (learns(status)) {
+        in_progress = true;
+        take_over();
+    }
+    return status;
+}
+
+void LearnedFeedForward::Learner::go_on() {
+    if (in_progress) {
+        estimator->advance(share);
         take_over();
     }
 }
 
-void LearnedFeedForward::take_over() {
-    if (learner_->advance(Budget::predict_only())) { // no work is left
-        learner_->copy_weights(weights_);
-        in_progress_ = false;
+void LearnedFeedForward::Learner::take_over() {
+    if (estimator->advance(Budget::predict_only())) { // no work is left
+        // the physics' parameters are the last ones of any model's weights
+        estimator->copy_weights(std::span(weights).last(estimator->weight_count()));
+        in_progress = false;
     }
 }
 
 bool LearnedFeedForward::restore(std::span<const std::byte> snapshot) {
-    const bool restored = learner_->restore(snapshot);
+    const bool restored = learner_.estimator->restore(snapshot);
     if (restored) {
-        in_progress_ = true;
-        take_over();
+        learner_.in_progress = true;
+        learner_.take_over();
     }
     return restored;
 }
 
 std::int64_t LearnedFeedForward::tick_cost() const {
-    const Cost cost = learner_->cost();
-    return 2 * (cost.predict + cost.variance) + share_.operations;
+    const Cost cost = learner_.estimator->cost();
+    std::int64_t total = 2 * (cost.predict + cost.variance) + learner_.share.operations;
+    if (physics_) { // its own tick, and another prediction for the reference
+        const Cost of_physics = physics_->estimator->cost();
+        total += of_physics.predict + of_physics.variance + physics_->share.operations + cost.predict;
+    }
+    return total;
 }
 
 bool LearnedFeedForward::predict(std::int64_t time_ns, const double* reference, double* torque) {
     const Tick tick = follower_->tick({time_ns, of_joints(reference), {}, {}, {}});
     if (!tick.status.estimated()) {
         ++counters_.reference_unknown;
-        std::fill_n(torque, prediction_.size(), 0.0);
+        std::fill_n(torque, static_cast<std::size_t>(forecast_count()) * prediction_.size(), 0.0);
         return false;
     }
-    return take_prediction(torque);
+    const bool known = take_prediction(learner_, torque);
+    if (!physics_) {
+        return known;
+    }
+    const std::size_t n = prediction_.size();
+    const bool physics_known = take_prediction(*physics_, torque + n);
+    if (!known) {
+        std::copy_n(torque + n, n, torque);
+    } else if (!physics_known) {
+        std::copy_n(torque, n, torque + n);
+    }
+    return known || physics_known;
 }
 
 bool LearnedFeedForward::rest(const JointVector& position, JointVector& torque) {
@@ -148,11 +219,11 @@ bool LearnedFeedForward::rest(const JointVector& position, JointVector& torque) 
         return false;
     }
     torque.resize(position.size());
-    return take_prediction(torque.data());
+    return take_prediction(learner_, torque.data());
 }
 
-bool LearnedFeedForward::take_prediction(double* torque) {
-    const bool within_bounds = follower_->predict_with(weights_, prediction_);
+bool LearnedFeedForward::take_prediction(const Learner& learner, double* torque) {
+    const bool within_bounds = follower_->predict_with(learner.weights, prediction_);
     std::ranges::copy(prediction_, torque);
     return within_bounds &&
            std::ranges::all_of(prediction_, [](float value) { return std::isfinite(value); });

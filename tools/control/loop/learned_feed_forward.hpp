@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,11 @@ struct LearningCounters {
 /// other always has the first one's weights. The command therefore depends on the reference, without the
 /// encoders' noise and delay, and the weights depend on the measured motion.
 ///
+/// For a model with features and learned physics (SPK) a third estimator learns the physics alone, with a
+/// memory of `physics_memory_s` and without innovation gate. Its forecast is the second one. With few
+/// parameters it is right within a second after a change of the arm, when the features have not been
+/// determined again yet. It starts from the prior, also after `restore`.
+///
 /// The work for one sample is distributed over the control ticks until the next sample, with a bounded share
 /// per tick. This is the host's counterpart of dfdyn::LearnedTorque (a dfdyn::TorqueLearner), for models of
 /// any size.
@@ -36,6 +42,9 @@ class LearnedFeedForward {
   public:
     using Scalar = double;
     static constexpr int outputs = dynamic;
+    static constexpr int forecasts = dynamic;
+    /// Chosen on the iCub's arm with tripled friction (docs/results/loop.md).
+    static constexpr double physics_memory_s = 0.53;
 
     /// `from_prior`: ignores the initial weights from training. `ticks`: control ticks per sample. `monitor`:
     /// monitors the learner; null for none. `contact`: limits for the detection of contacts, in which nothing
@@ -46,6 +55,8 @@ class LearnedFeedForward {
                        const ContactModel* contact = nullptr);
 
     Extent<dynamic> output_count() const noexcept { return {static_cast<int>(prediction_.size())}; }
+    /// Returns 1; with the physics alone 2.
+    Extent<dynamic> forecast_count() const noexcept { return {physics_ ? 2 : 1}; }
 
     /// Restarts both windows for an arm that has been at rest at `position` (one value per joint, rad) for a
     /// long time; `time_ns`: the present time.
@@ -57,8 +68,9 @@ class LearnedFeedForward {
     /// Continues the learning; once in each control tick.
     void go_on();
 
-    /// Predicts the torque (N·m) of the reference at `time_ns`, one sample period after the previous call.
-    /// Returns false if the model has no valid prediction.
+    /// Predicts the torque (N·m) of the reference at `time_ns`, one sample period after the previous call:
+    /// the torques of each forecast. One without a valid prediction is that of the other; returns false if
+    /// none has one.
     bool predict(std::int64_t time_ns, const double* reference, double* torque);
 
     /// Predicts the torque (N·m) that holds the arm at rest at `position`, after the motion has ended. Each
@@ -68,7 +80,7 @@ class LearnedFeedForward {
     bool rest(const JointVector& position, JointVector& torque);
 
     /// Returns the learned state in the firmware's format, to continue after a restart.
-    std::vector<std::byte> snapshot() const { return learner_->snapshot(); }
+    std::vector<std::byte> snapshot() const { return learner_.estimator->snapshot(); }
     /// Restores a snapshot. Returns false, without any change, if it does not match this model.
     bool restore(std::span<const std::byte> snapshot);
 
@@ -82,25 +94,36 @@ class LearnedFeedForward {
         return contacts_ != nullptr && contacts_->detector().contact() ? contacts_->detector().joint() : -1;
     }
     /// Resets the covariance after a change of the arm: see RuntimeEstimator::relearn.
-    void relearn() { learner_->relearn(); }
+    void relearn() { learner_.estimator->relearn(); }
     /// Returns the monitor's findings so far, with times since `begin`.
     RecordedChanges changes() const;
 
   private:
-    void take_over();
-    /// Predicts from the second estimator's columns; false if they exceed the model's bounds.
-    bool take_prediction(double* torque);
+    /// An estimator that learns in slices, and the weights that it has learned.
+    struct Learner {
+        std::unique_ptr<RuntimeEstimator> estimator{};
+        Budget share{};               ///< budget of a control tick
+        std::vector<float> weights{}; ///< of the follower's columns; those not learned here are 0
+        bool in_progress = false;     ///< the estimator has weights that are newer than `weights`
+
+        Status learn(const MeasuredSample& sample);
+        void go_on();
+        void take_over();
+    };
+
+    /// Predicts from the follower's columns with these weights; false if they exceed the model's bounds.
+    bool take_prediction(const Learner& learner, double* torque);
     std::span<const double> of_joints(const double* values) const { return {values, prediction_.size()}; }
 
     std::int64_t sample_period_ns_;
     int lags_;
-    std::unique_ptr<RuntimeEstimator> learner_, follower_;
+    Learner learner_;
+    std::optional<Learner> physics_; ///< learns the physics alone
+    std::unique_ptr<RuntimeEstimator> follower_;
     MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is monitored
     ContactEstimator* contacts_ = nullptr;  ///< the learner, if contacts are detected
-    Budget share_;                          ///< budget of a control tick
     std::int64_t begin_ns_ = 0;
-    bool in_progress_ = false; ///< the learner has weights that are newer than `weights_`
-    std::vector<float> weights_, prediction_;
+    std::vector<float> prediction_;
     int rest_lag_ = 0; ///< samples already added to the window by `rest`
     JointVector rest_position_;
     LearningCounters counters_;

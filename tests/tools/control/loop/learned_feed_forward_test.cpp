@@ -4,8 +4,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
+#include "tests/tools/support/small_model.hpp"
 #include "tools/base/text/error.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -136,6 +138,29 @@ TEST_CASE("a sample without torque is not learned but its position enters the wi
     }
     CHECK(feed_forward.counters().learned == learned + 50);
     CHECK(feed_forward.counters().samples == 150);
+}
+
+TEST_CASE("the forecast of the physics alone follows a change of the arm before the whole model's") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const TrainedModel model =
+        dfdyn::tests::small_physics_model(engine, "SPK", InputKind::DFR, /*wrench=*/false);
+    LearnedFeedForward feed_forward(model, true, 2, 4, "model");
+    REQUIRE(feed_forward.forecast_count() == 2);
+    CHECK(LearnedFeedForward(model_of(engine), true, 2, 4, "model").forecast_count() == 1);
+    constexpr std::int64_t model_period = 4'000'000;
+    constexpr double load = 5;
+    std::array<double, 4> predicted{};
+    feed_forward.begin(0, position(0).data());
+    for (int tick = 1; tick <= 2250; ++tick) { // at 2000 the load of joint 2 changes its sign
+        const std::array<double, 2> measured{0, tick <= 2000 ? load : -load};
+        feed_forward.learn(tick * model_period, position(tick).data(), measured.data());
+        for (int slice = 1; slice < 4; ++slice) {
+            feed_forward.go_on();
+        }
+        REQUIRE(feed_forward.predict(tick * model_period, position(tick).data(), predicted.data()));
+    }
+    CHECK(predicted[3] < -0.5 * load);
+    CHECK(predicted[1] > predicted[3] + 0.5 * load);
 }
 
 TEST_CASE("a model that does not map these joints' positions to their torques is rejected") {
