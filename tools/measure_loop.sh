@@ -42,9 +42,15 @@ scenario() {
     fi
 }
 
-# cells FAULT RUN_OF_SPK RUN_OF_P LIMIT...: a row of the table.
+# begin_of SCENARIO: time of its fault, s; 0 if it has none after the start.
+begin_of() {
+    grep -oE '"(from|at|removed)_s": [0-9]+' "$1" | sed 's/.* //' | grep -m 1 . || echo 0
+}
+
+# cells FAULT BEGIN RUN_OF_SPK RUN_OF_P LIMIT...: a row of the table. Recovery: until the end of the last second before 65 s with more
+# than 1.5 times the largest error in the ten seconds before the fault.
 cells() {
-    awk -v fault="$1" -v limits="${*:4}" '
+    awk -v fault="$1" -v begin="$2" -v limits="${*:5}" '
         function cell(value) { return value == "" ? "stopped" : sprintf("%.2f", value) }
         BEGIN { split(limits, limit, " ") }
         FNR == 1 { file++ }
@@ -53,6 +59,11 @@ cells() {
             match($0, /\([a-z_]+/)
             ended[run] = substr($0, RSTART + 1, RLENGTH - 1)
         }
+        file == 1 && run == "learned" && /^learned: .* s: .*confidence/ {
+            cause = $4
+            sub(/[:;]$/, "", cause)
+            named = named (named == "" ? "" : ", ") cause " " $2 " s"
+        }
         file == 1 && $1 == "peaks:" && run == "learned" {
             for (i = 8; $i ~ /^[0-9.]+,?$/; i++) { share = 100 * $i / limit[i - 7]; step = share > step ? share : step }
         }
@@ -60,16 +71,19 @@ cells() {
             if (file == 1) {
                 for (k = 2; k <= 5; k++) { if ($k > worst[k]) worst[k] = $k }
                 if ($5 / $2 > ratio) ratio = $5 / $2
+                if ($1 >= begin - 10 && $1 < begin && $5 > usual) usual = $5
+                if ($1 >= begin && $1 < 65 && $5 > 1.5 * usual) recovered = $1 + 1 - begin
             } else {
                 if ($4 > least_squares) least_squares = $4
                 if ($5 > observed) observed = $5
             }
         }
         END {
-            printf "| %s | %s | %s | %s | %s | %s | %s | %s | %.1f | %s |\n", fault, cell(worst[2]), cell(worst[3]), cell(least_squares),
+            printf "| %s | %s | %s | %s | %s | %s | %s | %s | %.1f | %s | %s | %s |\n", fault, cell(worst[2]), cell(worst[3]), cell(least_squares),
                 cell(observed), cell(worst[4]), cell(worst[5]), ratio == "" ? "-" : sprintf("%.2f", ratio), step,
+                (ended["learned"] == "none" && begin >= 20 ? sprintf("%d", recovered) : "-"), named,
                 ended["learned"] == "none" ? "" : ended["learned"]
-        }' "$2" "$3"
+        }' "$3" "$4"
 }
 
 # run ARM URDF FAULT MODEL [OPTION...]: ends with a status where the loop stops by itself, as some shall.
@@ -81,8 +95,8 @@ run() {
 # table ARM URDF LIMIT...: all faults of an arm.
 table() {
     local arm=$1 robot=$data/robots/$2 fault
-    echo "| fault | nominal | observer | least squares | least squares, observer | learned alone | learned | learned / nominal | step (%) | stopped by |"
-    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
+    echo "| fault | nominal | observer | least squares | least squares, observer | learned alone | learned | learned / nominal | step (%) | recovery (s) | named | stopped by |"
+    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- | --- |"
     for fault in none $(cd "$data/loop_faults" && basename -s .json -- *.json); do
         if [[ $arm == icub && $fault == torque_* ]]; then
             continue # it has no torque sensors
@@ -90,7 +104,7 @@ table() {
         scenario "$arm" "$fault" >"$out/$arm.$fault.json"
         run "$arm" "$robot" "$fault" SPK
         run "$arm" "$robot" "$fault" P
-        cells "$fault" "$out/$arm.$fault.SPK.run" "$out/$arm.$fault.P.run" "${@:3}"
+        cells "$fault" "$(begin_of "$out/$arm.$fault.json")" "$out/$arm.$fault.SPK.run" "$out/$arm.$fault.P.run" "${@:3}"
     done
 }
 
