@@ -221,19 +221,20 @@ TEST_CASE("after friction has tripled the iCub's arm tracks within 3 mrad a seco
 
 TEST_CASE(
     "with more features and on other motions the iCub's arm tracks within 3 mrad a second after friction "
-    "has tripled") {
+    "has tripled",
+    "[.long]") {
     Setting arm = icub_loop();
     const LoopModel model = trained(arm, 60);
     arm.scenario.faults = with_fault(ur5_loop(), "friction_step").faults;
     check_later_seconds(arm, model, {31, 2101}, 3e-3);
 }
 
-TEST_CASE("a second after a load of 3 kg the UR5 tracks within 3 mrad") {
+TEST_CASE("a second after a load of 3 kg the UR5 tracks within 3 mrad", "[.long]") {
     const Setting arm = ur5_loop();
     check_later_seconds(with_load(arm, 3), trained(arm), {12, 2101}, 3e-3);
 }
 
-TEST_CASE("a second after a load of 0.75 kg the iCub's arm tracks within 3 mrad") {
+TEST_CASE("a second after a load of 0.75 kg the iCub's arm tracks within 3 mrad", "[.long]") {
     const Setting arm = icub_loop();
     check_later_seconds(with_load(arm, 0.75), trained(arm), {12, 2101}, 3e-3);
 }
