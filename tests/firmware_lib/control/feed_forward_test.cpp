@@ -290,9 +290,11 @@ class LoadedJoint {
     double largest_error = 0; ///< rad, of the last call of `go`
 
   private:
+    static constexpr JointLoop<double> servo{2, 800, 80, 0, 0};
+
     ToldLearner learner_;
     Forward forward_{learner_, settings};
-    ServoJoint joint_{{2, 800, 80, 0, 0}, period_s / 20};
+    ServoJoint joint_{servo, period_s / 20};
     std::int64_t tick_ = 0;
 };
 
