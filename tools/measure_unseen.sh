@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]: how well a model that learned one motion predicts another of the same arm, which it has not seen.
 # Trains NP, P and SPK on recording A, then replays recording B with each and with their combination: frozen, so that nothing of B
-# reaches them, and learning. Prints one table (Markdown) of normalised errors and of shares within two standard deviations, with
-# persistence, AR(2), rigid bodies with friction and a constant. Writes models and replays into OUT.
+# reaches them, and learning. Prints one table (Markdown) of normalised errors and of shares within two standard deviations, with the
+# ratio of the combination to its best member, persistence, AR(2), rigid bodies with friction and a constant. Writes models and replays
+# into OUT.
 # --quick: only the two recordings that chose no setting of the program.
 set -euo pipefail
 usage='usage: measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]'
@@ -53,6 +54,17 @@ opponent() {
     line "$3" "$(figures "$1" "  $2")" "- - - - - -"
 }
 
+# ratio NAME KIND: the row of the combination's errors, each divided by that of its best member.
+ratio() {
+    local structure ratios
+    ratios=$(for structure in NP P SPK combination; do
+        figures "$out/$1.$structure.$2" "nRMSE, one step"
+    done | awk '
+        NR < 4 { for (k = 1; k <= NF; ++k) if (NR == 1 || $k < best[k]) best[k] = $k }
+        NR == 4 { for (k = 1; k <= NF; ++k) printf "%.3f ", $k / best[k] }')
+    line "combination / best member" "$ratios" "- - - - - -"
+}
+
 # logged FILE COMMAND...: runs a command with its output in FILE; shows the end of it when the command fails.
 logged() {
     local file=$1
@@ -94,6 +106,7 @@ pair() {
     for structure in NP P SPK combination; do
         model "$out/$name.$structure.frozen" "$structure"
     done
+    ratio "$name" frozen
     opponent "$all.frozen" "rigid body of the URDF" "rigid body of the URDF + friction"
     opponent "$all.frozen" "identified rigid body" "identified rigid body + friction"
     line "best constant (by definition)" "1 1 1 1 1 1" "- - - - - -"
@@ -101,6 +114,7 @@ pair() {
     for structure in NP P SPK combination; do
         model "$out/$name.$structure.learning" "$structure"
     done
+    ratio "$name" learning
     opponent "$all.learning" "with residual state" "combination + residual state"
     opponent "$all.learning" "persistence, y(t-1)" "persistence"
     opponent "$all.learning" "AR(2), learned online" "AR(2)"

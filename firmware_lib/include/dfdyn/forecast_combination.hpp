@@ -14,20 +14,23 @@ namespace dfdyn {
 
 /// Combines the predictions of several estimators ("members") of the same m outputs into one.
 ///
-/// Per output, the weight of a member is inversely proportional to the square of its expected square error:
-/// its mean square error over about `memory` samples, plus a multiple of the variance of its parameters at
+/// Per output, the weight of a member is inversely proportional to the square of its expected square error at
 /// this input. After J. M. Bates and C. W. J. Granger, "The combination of forecasts" (1969), where weights
-/// are inversely proportional to the mean square error itself.
+/// are inversely proportional to the mean square error itself. Three different quantities serve as expected
+/// square error:
+///  - while samples are learned, for their predictions: the mean square error one step ahead over about
+///    `memory` samples, times the variance of a measurement at this input divided by its mean over the same
+///    samples. Only the ratio of a member's variances is used, not their size;
+///  - for predictions with weights of some time ago: the same with the errors of such predictions (`ahead`).
+///    Errors one step ahead mostly measure tracking, and do not show how a member predicts without learning;
+///  - where nothing has been learned yet, or for some memories: the variance of the noise plus a factor times
+///    that of the parameters at this input. Between the two, the last errors ahead lose their influence.
 ///
-/// Errors one step ahead mostly measure tracking. They do not show how a member would predict if it stopped
-/// learning. `learn` therefore also uses each member's prediction with its weights of 0.2 to 0.4 s ago
-/// (`DelayedWeights`), and averages both squares. The variance decides where nothing is learned, on a motion
-/// that was not seen before.
-///
-/// The powers and a memory of 0.8 s were chosen on the UR5 recordings No5 and No6. Weights are in [0, 1] and
-/// sum to 1, so the combination of finite predictions lies between them. A square error is clipped to 10⁴
-/// times the mean square error of the best member, so that an absurd error is forgotten within five memories;
-/// without `noise_std` the clipping begins once the memory is full.
+/// The power and a memory of 0.8 s were chosen on the UR5 recordings No5 and No6, as was the ratio of
+/// variances instead of a variance added to the mean square errors. Weights are in [0, 1] and sum to 1, so
+/// the combination of finite predictions lies between them. A square error is clipped to 10⁴ times the mean
+/// square error of the best member, so that an absurd error is forgotten within five memories; without
+/// `noise_std` the clipping begins once the memory is full.
 ///
 ///     for each member j: estimate[j] = estimator[j].tick(sample, budget);   // into tables, member by member
 ///     combination.weigh(deviations);                        // at this input; without: by past errors alone
@@ -35,21 +38,20 @@ namespace dfdyn {
 ///     if the sample was not refused: combination.learn(predictions, ahead, sample.output.data());
 ///     else: combination.skip();
 ///
-/// Tables contain m values per member, member by member. Cost: `cost()`; 3 c m + 5 scalars for c members.
+/// Tables contain m values per member, member by member. Cost: `cost()`; 6 c m + 5 scalars for c members.
 /// Never allocates.
 template <class Scalar, int members, int m>
 class ForecastCombination {
   public:
-    /// Factor on the variance of a member's parameters while recent errors are available. It is greater than
-    /// 1 because the variance assumes white noise: with residuals of autocorrelation ρ, n samples carry the
+    /// Factor on the variance of a member's parameters while no errors are known. It is greater than 1
+    /// because the variance assumes white noise: with residuals of autocorrelation ρ, n samples carry the
     /// information of n (1 - ρ) / (1 + ρ) samples, and ρ = 0.82 gives the factor 10. Chosen on the UR5
     /// recordings No5 and No6.
     static constexpr Scalar variance_factor = 10;
-    /// Factor while no recent errors are available, for deviations that include correlation and the
-    /// uncertainty away from the data (`Extrapolation`). Such deviations bound 95 % of the errors; their
-    /// variance beyond the noise is about four times the mean square error. Chosen on the UR5 recordings No5
-    /// and No6, where 0.15 to 0.35 perform equally, and on the servo's recordings 00, 02 and 03, where it
-    /// makes little difference.
+    /// The same factor for deviations that include correlation and the uncertainty away from the data
+    /// (`Extrapolation`). Such deviations bound 95 % of the errors; their variance beyond the noise is about
+    /// four times the mean square error. Chosen on the UR5 recordings No5 and No6, where 0.15 to 0.35 perform
+    /// equally, and on the servo's recordings 00, 02 and 03, where it makes little difference.
     static constexpr Scalar calibrated_variance_factor = Scalar(0.25);
 
     /// `memory`: samples, ≥ 1; smaller values count as 1. `noise_std`: standard deviation of each member's
@@ -63,6 +65,7 @@ class ForecastCombination {
         : members_(member_count), outputs_(output_count), memory_(memory > 1 ? memory : Scalar(1)),
           unjudged_factor_(unjudged_factor > 0 ? unjudged_factor : Scalar(0)),
           noise_square_(Table::zeros(extent<size>(member_count * output_count))), mean_square_(noise_square_),
+          mean_square_ahead_(noise_square_), variance_(noise_square_), mean_variance_(noise_square_),
           weights_(noise_square_) {
         for (int i = 0; i < count() && noise_std != nullptr; ++i) {
             noise_square_[i] = square(noise_std[i], largest);
@@ -73,10 +76,12 @@ class ForecastCombination {
     /// Returns to the state after construction.
     constexpr void restart() noexcept {
         const bool known = noise_square_[0] > 0;
-        set_trust(known ? Scalar(0) : Scalar(1));
+        trust_ = known ? Scalar(0) : Scalar(1);
         samples_ = known ? std::min(first_samples, memory_) : Scalar(0);
+        learning_ = false;
         for (int i = 0; i < count(); ++i) {
-            mean_square_[i] = known ? noise_square_[i] : least;
+            mean_square_[i] = mean_square_ahead_[i] = known ? noise_square_[i] : least;
+            variance_[i] = mean_variance_[i] = mean_square_[i];
         }
         weigh();
     }
@@ -85,8 +90,10 @@ class ForecastCombination {
     /// input: a table in the outputs' units, including parameters and noise as in `Estimate`. NaN counts as
     /// infinite.
     constexpr void weigh(const Scalar* deviations) noexcept {
-        copy_mean_squares(weights_.data());
-        weigh(weights_.data(), deviations, weights_.data());
+        for (int i = 0; i < count(); ++i) {
+            variance_[i] = std::max(square(deviations[i], largest), noise_square_[i]);
+        }
+        weigh((learning_ ? mean_square_ : mean_square_ahead_).data(), deviations, weights_.data());
     }
 
     /// Same, from the given mean square errors (see `copy_mean_squares`) into the table `weights`, which may
@@ -94,9 +101,10 @@ class ForecastCombination {
     constexpr void weigh(const Scalar* mean_squares, const Scalar* deviations,
                          Scalar* weights) const noexcept {
         for (int i = 0; i < count(); ++i) {
-            const Scalar variance = square(deviations[i], largest) - noise_square_[i];
-            weights[i] =
-                std::clamp(mean_squares[i] + factor_ * std::max(variance, Scalar(0)), least, largest);
+            const Scalar variance = std::max(square(deviations[i], largest), noise_square_[i]);
+            const Scalar judged = mean_squares[i] * (variance / mean_variance_[i]);
+            const Scalar unjudged = noise_square_[i] + unjudged_factor_ * (variance - noise_square_[i]);
+            weights[i] = std::clamp(blended(judged, unjudged), least, largest);
         }
         for (int k = 0; k < outputs_; ++k) {
             normalise(k, weights);
@@ -120,22 +128,25 @@ class ForecastCombination {
         }
     }
 
-    /// Updates the mean square errors from the members' predictions of a sample and its m measured outputs.
-    /// `ahead`: predictions of the same sample with older weights; may be `predictions`. Then computes the
-    /// weights from the errors alone.
+    /// Updates the mean square errors from the members' predictions of a sample and its m measured outputs,
+    /// and the mean variances from the deviations of the last `weigh`. `ahead`: predictions of the same
+    /// sample with older weights; may be `predictions`. Then computes the weights from the errors alone.
     constexpr void learn(const Scalar* predictions, const Scalar* ahead, const Scalar* measured) noexcept {
-        copy_mean_squares(mean_square_.data());
-        set_trust(1);
+        for (int i = 0; i < count() && trust_ < 1; ++i) { // the past errors have lost influence
+            mean_square_[i] = blended(mean_square_[i], noise_square_[i]);
+            mean_square_ahead_[i] = blended(mean_square_ahead_[i], noise_square_[i]);
+        }
+        trust_ = 1;
+        learning_ = true;
         // the scale of plausible errors is known
         const bool scaled = samples_ >= memory_ || noise_square_[0] > 0;
         samples_ = samples_ < memory_ ? samples_ + 1 : memory_;
         for (int k = 0; k < outputs_; ++k) {
-            const Scalar most = scaled ? std::min(outlier * best_of(k), largest) : largest;
+            update(mean_square_, predictions, measured[k], k, scaled);
+            update(mean_square_ahead_, ahead, measured[k], k, scaled);
             for (int j = 0; j < members_; ++j) {
-                Scalar& mean = mean_square_[at(j, k)];
-                const Scalar now = (square(predictions[at(j, k)] - measured[k], most) +
-                                    square(ahead[at(j, k)] - measured[k], most)) /
-                                   2;
+                Scalar& mean = mean_variance_[at(j, k)];
+                const Scalar now = std::min(variance_[at(j, k)], scaled ? outlier * mean : largest);
                 mean = std::clamp(mean + (now - mean) / samples_, least, largest);
             }
         }
@@ -146,7 +157,8 @@ class ForecastCombination {
     /// members' noise and variances decide. The last errors before a standstill carry little information
     /// about the next motion. Has no effect without `noise_std`.
     constexpr void skip() noexcept {
-        set_trust(trust_ * (noise_square_[0] > 0 ? 1 - 1 / memory_ : Scalar(1)));
+        trust_ *= noise_square_[0] > 0 ? 1 - 1 / memory_ : Scalar(1);
+        learning_ = false;
     }
 
     /// Same as `learn` with `ahead` equal to `predictions`.
@@ -154,24 +166,19 @@ class ForecastCombination {
         learn(predictions, predictions, measured);
     }
 
-    /// Maximum multiply-adds. `predict`: one `weigh` (8 c m for c members) and two `combine` (c m each), for
+    /// Maximum multiply-adds. `predict`: one `weigh` (10 c m for c members) and two `combine` (c m each), for
     /// predictions and deviations. `learn`: one `learn` or `skip`.
     [[nodiscard]] static constexpr Cost cost(Extent<members> member_count, Extent<m> output_count) noexcept {
         const std::int64_t table = std::int64_t{member_count} * output_count;
-        return {.predict = 10 * table,
-                .variance = 0,
-                .learn = 11 * table,
-                .forget = 0,
-                .largest_step = 11 * table};
+        const std::int64_t learn = 12 * table + 2 * output_count;
+        return {.predict = 12 * table, .variance = 0, .learn = learn, .forget = 0, .largest_step = learn};
     }
 
     /// Returns the weights, a table.
     [[nodiscard]] constexpr const Scalar* weights() const noexcept { return weights_.data(); }
-    /// Copies the mean square errors in use into a table.
+    /// Copies the mean square errors of predictions ahead into a table.
     constexpr void copy_mean_squares(Scalar* to) const noexcept {
-        for (int i = 0; i < count(); ++i) {
-            to[i] = trust_ * mean_square_[i] + (1 - trust_) * noise_square_[i];
-        }
+        std::copy(mean_square_ahead_.begin(), mean_square_ahead_.end(), to);
     }
 
     /// Returns the size of a snapshot, in bytes.
@@ -186,7 +193,8 @@ class ForecastCombination {
     /// changes nothing.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         const SnapshotResult result = read_snapshot(*this, identity(), buffer);
-        set_trust(1);
+        trust_ = 1;
+        learning_ = true;
         weigh();
         return result;
     }
@@ -195,8 +203,10 @@ class ForecastCombination {
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         visitor.ranged(self.samples_, Scalar(0), self.memory_);
-        for (auto& mean : self.mean_square_) {
-            visitor.ranged(mean, least, largest);
+        for (auto* const table : {&self.mean_square_, &self.mean_square_ahead_, &self.mean_variance_}) {
+            for (auto& mean : *table) {
+                visitor.ranged(mean, least, largest);
+            }
         }
     }
 
@@ -220,28 +230,39 @@ class ForecastCombination {
         return value < most ? std::max(value, least) : most;
     }
 
-    /// Returns the smallest mean square error of an output.
-    [[nodiscard]] constexpr Scalar best_of(int output) const noexcept {
+    /// Returns the smallest of the values of an output.
+    [[nodiscard]] constexpr Scalar least_of(const Table& table, int output) const noexcept {
         Scalar best = largest;
         for (int j = 0; j < members_; ++j) {
-            best = std::min(best, mean_square_[at(j, output)]);
+            best = std::min(best, table[at(j, output)]);
         }
         return best;
+    }
+
+    /// Updates one output's mean square errors from predictions of a measured value.
+    constexpr void update(Table& mean_squares, const Scalar* predictions, Scalar measured, int output,
+                          bool scaled) noexcept {
+        const Scalar most = scaled ? std::min(outlier * least_of(mean_squares, output), largest) : largest;
+        for (int j = 0; j < members_; ++j) {
+            Scalar& mean = mean_squares[at(j, output)];
+            const Scalar now = square(predictions[at(j, output)] - measured, most);
+            mean = std::clamp(mean + (now - mean) / samples_, least, largest);
+        }
+    }
+
+    /// Returns the mean of two expected square errors by the share of past errors.
+    [[nodiscard]] constexpr Scalar blended(Scalar judged, Scalar unjudged) const noexcept {
+        return unjudged + trust_ * (judged - unjudged);
     }
 
     [[nodiscard]] std::uint32_t identity() const noexcept {
         return (static_cast<std::uint32_t>(members_) << 16U) + static_cast<std::uint32_t>(outputs_);
     }
 
-    constexpr void set_trust(Scalar trust) noexcept {
-        trust_ = trust;
-        factor_ =
-            trust < 1 ? unjudged_factor_ + trust * (variance_factor - unjudged_factor_) : variance_factor;
-    }
-
     /// Computes the weights from past errors alone.
     constexpr void weigh() noexcept {
-        std::copy(mean_square_.begin(), mean_square_.end(), weights_.begin());
+        const Table& errors = learning_ ? mean_square_ : mean_square_ahead_;
+        std::copy(errors.begin(), errors.end(), weights_.begin());
         for (int k = 0; k < outputs_; ++k) {
             normalise(k, weights_.data());
         }
@@ -268,11 +289,14 @@ class ForecastCombination {
     [[no_unique_address]] Extent<m> outputs_;
     Scalar memory_;
     Scalar unjudged_factor_;
-    Scalar factor_ = variance_factor; ///< present factor on the variance beyond the noise
-    Scalar samples_ = 0;              ///< memory of the means so far, at most `memory_`
-    Scalar trust_ = 1;                ///< share of the past errors, in [0, 1]; the rest is the noise's
-    Table noise_square_;              ///< zero: unknown
-    Table mean_square_;
+    Scalar samples_ = 0;    ///< memory of the means so far, at most `memory_`
+    Scalar trust_ = 1;      ///< share of the past errors, in [0, 1]; the rest is the variances'
+    bool learning_ = false; ///< the last sample was learned
+    Table noise_square_;    ///< zero: unknown
+    Table mean_square_;     ///< of errors one step ahead
+    Table mean_square_ahead_;
+    Table variance_;      ///< of a measurement about each prediction, at the last `weigh`
+    Table mean_variance_; ///< mean of `variance_` over the same samples as the errors
     Table weights_;
 };
 

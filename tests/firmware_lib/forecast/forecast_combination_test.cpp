@@ -203,26 +203,30 @@ TEMPLATE_TEST_CASE("a member with uncertain parameters at an input has less weig
     CHECK(combined.weights()[1] == before);
 }
 
-TEST_CASE(
-    "the variance factor changes at the first error and returns if errors are missing for several memories") {
+TEST_CASE("once errors are known the ratio of a member's variances counts and not their size") {
     const double unjudged = Combination<double>::calibrated_variance_factor;
     Combination<double> combined({}, {}, 50, noise<double>.data(), unjudged);
     Values<double> deviations = noise<double>;
     deviations[1] = 2; // a variance of 3 of the parameters plus 1 of the noise
-    const auto ratio = [&](double factor) { return 1 / (1 + 3 * factor) / (1 + 3 * factor); };
-    const auto weights = [&] {
+    const auto ratio = [&] {
         combined.weigh(deviations.data());
         return combined.weights()[1] / combined.weights()[3];
     };
-    CHECK(weights() == Approx(ratio(unjudged)));
+    const auto inverse_square = [](double x) { return 1 / (x * x); };
+    CHECK(ratio() == Approx(inverse_square(1 + 3 * unjudged)));
     const std::array<double, outputs> measured{};
     const Values<double> error{0.5, 1, 1, 1, 2, 1}; // the deviations of the noise
-    combined.learn(error.data(), measured.data());
-    CHECK(weights() == Approx(ratio(Combination<double>::variance_factor)));
+    for (int t = 0; t < 1000; ++t) {
+        combined.weigh(deviations.data());
+        combined.learn(error.data(), measured.data());
+    }
+    CHECK(ratio() == Approx(1).epsilon(1e-6));
+    deviations[1] = 4; // four times the variance of the samples with these errors
+    CHECK(ratio() == Approx(inverse_square(4)).epsilon(1e-6));
     for (int t = 0; t < 1000; ++t) {
         combined.skip();
     }
-    CHECK(weights() == Approx(ratio(unjudged)).epsilon(1e-3));
+    CHECK(ratio() == Approx(inverse_square(1 + 15 * unjudged)).epsilon(1e-3));
 }
 
 TEST_CASE("after a memory without samples the weights follow the noise until the next sample") {
@@ -245,7 +249,7 @@ TEST_CASE("after a memory without samples the weights follow the noise until the
     CHECK(combined.weights()[2] > 0.99);
 }
 
-TEST_CASE("a member that only tracks has less weight than one that also predicts ahead") {
+TEST_CASE("a member that only tracks has less weight in predictions ahead and when learning stops") {
     Combination<double> combined = scaled_combination<double>(50);
     const std::array<double, outputs> measured{};
     const Values<double> one_step{0.1, 0.1, 0.3, 0.3, 5, 5};
@@ -253,12 +257,16 @@ TEST_CASE("a member that only tracks has less weight than one that also predicts
     for (int t = 0; t < 500; ++t) {
         combined.learn(one_step.data(), ahead.data(), measured.data());
     }
+    CHECK(combined.weights()[0] > 0.98);
+    Values<double> of_ahead{};
+    combined.copy_mean_squares(of_ahead.data());
+    combined.weigh(of_ahead.data(), noise<double>.data(), of_ahead.data());
+    CHECK(of_ahead[2] > 0.99);
+    combined.skip();
+    combined.weigh(noise<double>.data());
     CHECK(combined.weights()[2] > 0.99);
-    Combination<double> tracking = scaled_combination<double>(50);
-    for (int t = 0; t < 500; ++t) {
-        tracking.learn(one_step.data(), measured.data());
-    }
-    CHECK(tracking.weights()[0] > 0.98);
+    combined.learn(one_step.data(), ahead.data(), measured.data());
+    CHECK(combined.weights()[0] > 0.9);
 }
 
 TEST_CASE("a combination continues from its snapshot and rejects any other") {

@@ -22,9 +22,10 @@ struct CombinationMember {
 };
 
 /// Returns an estimator that combines several estimators of the same arm and outputs as
-/// dfdyn::ForecastCombination does. The weights depend on the members' errors one step ahead and 0.2 to 0.4 s
-/// ahead, and on their variances at each input. While no error is known, the variances count as calibrated if
-/// all members are calibrated.
+/// dfdyn::ForecastCombination does. A tick that follows a learned sample is weighted by the members' errors
+/// one step ahead, any other prediction by those 0.2 to 0.4 s ahead; both depend on the ratio of the present
+/// variances to those of the samples with these errors. While no error is known, the variances decide, and
+/// count as calibrated if all members are calibrated.
 ///
 /// - Prediction: requires the predictions of all members. The status comes from the first member without a
 ///   prediction, or without learning.
