@@ -144,6 +144,27 @@ TEST_CASE("a run from the zero that a silence ends before it is judged shows a r
     CHECK(restart.refused(gate, 80, 900) == Reason::position_lost);
 }
 
+TEST_CASE("a clock that is set forward does not connect readings that were just refused") {
+    const Restart far{.off_rad = -2};           // no reading is near the zero
+    const bool noticed = GENERATE(false, true); // a step forward may be taken for a silence
+    MotionGate gate = far.trusting_gate();
+    const auto shifted = [&](int tick, std::int64_t clock_ns) {
+        EncoderReading reading = far.at(tick, truth(tick) + 0.3);
+        reading.stamp_ns += clock_ns;
+        return gate.take(reading).reason;
+    };
+    for (int tick = 20; tick < 56; ++tick) {
+        CHECK(shifted(tick, 0) != Reason::ok);
+    }
+    if (noticed) {
+        gate.forget_time();
+    }
+    for (int tick = 56; tick < 400; ++tick) {
+        CAPTURE(tick, noticed);
+        CHECK(shifted(tick, 7'000'000'000) == Reason::position_lost);
+    }
+}
+
 TEST_CASE("an encoder that has lost its zero stays so while the clock is set back") {
     const Restart far{.off_rad = -2}; // no reading is near the zero
     MotionGate gate = far.trusting_gate();

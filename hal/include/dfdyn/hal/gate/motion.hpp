@@ -183,10 +183,12 @@ class MotionGate : private MotionEvidence {
             }
             return leads;
         }
-        const bool can_be = has_lost_zero()
-                                ? !refused_time_known_ || tolerance_.reaches(refused_.last(), reading)
-                                : recently(refused_.last().stamp_ns, reading.stamp_ns) &&
-                                      comparison_.reaches_after_silence(refused_, reading);
+        const bool reached = has_lost_zero() ? tolerance_.reaches(refused_.last(), reading)
+                                             : recently(refused_.last().stamp_ns, reading.stamp_ns) &&
+                                                   comparison_.reaches_after_silence(refused_, reading);
+        const bool same = refused_.readings() >= config_.qualification.readings &&
+                          goes_on_without_silence(refused_, reading);
+        const bool can_be = same || (refused_time_known_ ? reached : has_lost_zero());
         const bool goes_on = can_be && !comparison_.continues(run(), reading);
         if (goes_on) {
             refused_time_known_ = true;

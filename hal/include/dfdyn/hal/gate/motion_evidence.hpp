@@ -198,6 +198,16 @@ class MotionEvidence {
         return line.span_s > 0 && off >= std::min(way, 0.0) - error && off <= std::max(way, 0.0) + error;
     }
 
+    /// Returns whether a reading goes on from these as if no time had passed: a clock that is set forward
+    /// looks like a silence.
+    [[nodiscard]] constexpr bool goes_on_without_silence(const MotionRun& before,
+                                                         const EncoderReading& to) const noexcept {
+        const MotionLine line = before.end_line(0, config_.period_ns);
+        const double period_s = seconds_between(0, config_.period_ns);
+        const double off = to.position_rad - line.end_rad - line.velocity * period_s;
+        return line.span_s > 0 && magnitude(off) <= tolerance_.error(line, 2 * period_s, to.step_rad);
+    }
+
     /// Returns whether a run begins where an encoder does that was switched on.
     [[nodiscard]] constexpr bool begins_at_zero(const EncoderReading& first,
                                                 const MotionLine& begin) const noexcept {
