@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace dfdyn::tools {
 
@@ -34,6 +35,7 @@ void BusCheck::describe() {
     expect(devices.joints(zeros, zeros), description_->joints.rate_hz);
     if (const std::optional<hal::Frame> sync = devices.sync()) {
         expect({&*sync, 1}, description_->joints.rate_hz);
+        sync_key_ = {sync->extended, sync->id};
     }
     if (description_->sensor) {
         const hal::FrameList frames = description_->sensor->encode({});
@@ -112,7 +114,14 @@ void BusCheck::take(const hal::Frame& frame) {
     if (frame.error) {
         return;
     }
-    for (const StreamClock::Timed& timed : clock_.take(frame)) {
+    const std::uint64_t steps = clock_.steps();
+    const std::span<const StreamClock::Timed> ready = clock_.take(frame);
+    if (clock_.steps() != steps) {
+        for (auto& [key, stream] : streams_) {
+            stream.forget_phase();
+        }
+    }
+    for (const StreamClock::Timed& timed : ready) {
         take(timed);
     }
 }
@@ -133,8 +142,11 @@ void BusCheck::take(const StreamClock::Timed& timed) {
         return;
     }
     pass(frame.stamp_ns);
+    watch_load(stream, bits);
     if (stream != nullptr) {
         stream->take(frame, bits);
+        watch_order(*stream, frame.stamp_ns);
+        watch_answers(*stream, frame);
     }
     if (!arm_) {
         return;
@@ -146,6 +158,70 @@ void BusCheck::take(const StreamClock::Timed& timed) {
     }
     watch_joints(frame);
     assemble(last_ns_);
+}
+
+/// Finds the busiest windows of time.
+void BusCheck::watch_load(const BusStream* stream, double bits) {
+    constexpr std::int64_t window_ns = 200'000'000;
+    const std::int64_t window = (last_ns_ - first_ns_) / window_ns;
+    window_bits_ = window == window_ ? window_bits_ : Load{};
+    window_ = window;
+    window_bits_.load += bits;
+    window_bits_.unknown += stream != nullptr && !stream->known ? bits : 0;
+    const double possible_bits = bit_rate() * seconds_of(window_ns);
+    if (possible_bits > 0) {
+        peak_.load = std::max(peak_.load, window_bits_.load / possible_bits);
+        peak_.unknown = std::max(peak_.unknown, window_bits_.unknown / possible_bits);
+    }
+}
+
+void BusCheck::watch_order(const BusStream& stream, std::int64_t stamp_ns) {
+    constexpr std::int64_t once_ns = 10'000'000; // a clock that is set back is one time
+    if (!stream.in_sequence()) {
+        return;
+    }
+    if (stamp_ns < in_sequence_ns_ && stamp_ns - overtaken_ns_ > once_ns) {
+        ++overtaken_;
+        overtaken_ns_ = stamp_ns;
+    }
+    in_sequence_ns_ = std::max(in_sequence_ns_, stamp_ns);
+}
+
+void BusCheck::watch_answers(BusStream& stream, const hal::Frame& frame) {
+    if (sync_key_ && *sync_key_ == BusStreamKey{frame.extended, frame.id}) {
+        sync_ns_ = frame.stamp_ns;
+    } else if (sync_key_ && sync_ns_ != 0 && stream.expected_hz > 0) {
+        stream.answers.take(frame.stamp_ns - sync_ns_, 1e9 / stream.expected_hz);
+    }
+}
+
+std::int64_t BusCheck::small_clock_step_ns() const {
+    constexpr double same_step = 0.2; // share of the period
+    std::vector<const BusStream*> regular;
+    std::set<std::string> senders;
+    for (const auto& [key, stream] : streams_) {
+        if (stream.expected_hz > 0 && !stream.several && stream.is_regular()) {
+            regular.push_back(&stream);
+            senders.insert(stream.sender);
+        }
+    }
+    if (senders.size() < 2) {
+        return 0;
+    }
+    for (const PhaseStep& step : regular.front()->phase_steps()) {
+        const bool all = std::ranges::all_of(regular, [&](const BusStream* stream) {
+            const double period_ns = 1e9 / stream->expected_hz;
+            return std::ranges::any_of(stream->phase_steps(), [&](const PhaseStep& other) {
+                const double apart_ns = std::abs(seconds_of(other.time_ns - step.time_ns)) * 1e9;
+                const double off_ns = std::remainder(other.step_ns - step.step_ns, period_ns);
+                return apart_ns < 3 * period_ns && std::abs(off_ns) < same_step * period_ns;
+            });
+        });
+        if (all) {
+            return std::llround(step.step_ns);
+        }
+    }
+    return 0;
 }
 
 void BusCheck::watch_joints(const hal::Frame& frame) {
@@ -165,7 +241,12 @@ void BusCheck::watch_joints(const hal::Frame& frame) {
 
 /// Returns the stream of the frame's identifier; null if there is no room for another stream.
 BusStream* BusCheck::stream_of(const hal::Frame& frame) {
-    const BusStreamKey key{frame.extended, frame.id};
+    BusStreamKey key{frame.extended, frame.id};
+    const BusStreamKey described{!frame.extended, frame.id};
+    if (streams_.contains(described) && streams_[described].expected_hz > 0 && !streams_.contains(key)) {
+        key = described; // of another form than described
+        ++streams_[key].rejected;
+    }
     const auto found = streams_.find(key);
     if (found != streams_.end() && found->second.count > 0) {
         return &found->second;

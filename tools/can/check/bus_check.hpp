@@ -62,8 +62,18 @@ class BusCheck {
     /// Returns true if frames dropped by this computer explain all missing frames.
     bool dropped_all_missing() const;
     double load() const; ///< share of the bit rate used by the frames, with worst-case bit stuffing
-    /// share of the bit rate that the described sources would use; both are 0 if the bit rate is unknown
+    /// share of the bit rate that the described sources would use; 0 if the bit rate is unknown, as the
+    /// others
     double expected_load() const;
+    /// The load of the busiest fifth of a second, and what undescribed identifiers had of the bit rate in
+    /// one.
+    double peak_load() const { return peak_.load; }
+    double peak_unknown_load() const { return peak_.unknown; }
+    /// How often frames were read after one with a later time stamp, although both came in their sequence.
+    std::uint64_t overtaken() const noexcept { return overtaken_; }
+    /// The largest step of less than the sources' periods by which the clock was set: all regular sources
+    /// changed their phase by it at the same time. 0: none.
+    std::int64_t small_clock_step_ns() const;
 
     /// Number of assembled samples, and how many of them had a reason for their positions or their output.
     std::uint64_t samples() const noexcept { return samples_; }
@@ -94,6 +104,9 @@ class BusCheck {
     bool is_request(const hal::Frame& frame) const;
     void watch_joints(const hal::Frame& frame);
     BusStream* stream_of(const hal::Frame& frame);
+    void watch_load(const BusStream* stream, double bits);
+    void watch_order(const BusStream& stream, std::int64_t stamp_ns);
+    void watch_answers(BusStream& stream, const hal::Frame& frame);
     void assemble(std::int64_t now_ns);
 
     std::optional<BusDescription> description_;
@@ -109,12 +122,29 @@ class BusCheck {
     std::int64_t first_ns_ = 0, last_ns_ = 0;
     std::int64_t next_sample_ns_ = std::numeric_limits<std::int64_t>::min();
     double bits_ = 0;
+    struct Load {
+        double load = 0, unknown = 0;
+    };
+    Load peak_;                ///< of all windows
+    Load window_bits_;         ///< of the present one
+    std::int64_t window_ = -1; ///< its number
+    std::int64_t in_sequence_ns_ = std::numeric_limits<std::int64_t>::min();
+    std::int64_t overtaken_ns_ = 0; ///< stamp of the last one that counted
+    std::uint64_t overtaken_ = 0;
+    std::optional<BusStreamKey> sync_key_;
+    std::int64_t sync_ns_ = 0; ///< stamp of the last SYNC; 0: none
     std::uint64_t from_host_ = 0;
     bool started_ = false;
     std::uint64_t samples_ = 0;
     std::array<std::uint64_t, hal::reason_count> refused_{};
     hal::Reason last_position_ = hal::Reason::ok, last_output_ = hal::Reason::ok;
 };
+
+/// Returns true if frames are often read in another order than they were stamped in.
+inline bool is_overtaken(const BusCheck& check) {
+    constexpr std::uint64_t least_times = 3;
+    return check.overtaken() >= least_times;
+}
 
 /// Findings about the bus, then about each source, then about what the devices report.
 std::vector<BusFinding> bus_findings(const BusCheck& check);

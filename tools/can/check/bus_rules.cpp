@@ -14,6 +14,7 @@ namespace {
 
 constexpr double largest_load = 0.8;
 constexpr double largest_unknown_load = 0.1;
+constexpr double largest_unknown_peak = 0.25; ///< of a fifth of a second
 /// share of the samples or frames; for conditions that may occur occasionally
 constexpr double least_refused = 0.01;
 
@@ -30,6 +31,11 @@ std::string silence(const BusCheck& check) {
 }
 
 std::string overload(const BusCheck& check) {
+    if (check.peak_load() > largest_load && check.load() <= largest_load) {
+        return percent(check.peak_load()) +
+               " of the bit rate in the busiest 0.2 s, stuffed bits at worst; over all " +
+               percent(check.load());
+    }
     const double load = std::max(check.load(), check.expected_load());
     const char* const how = check.load() >= check.expected_load() ? " measured" : " as described";
     return load > largest_load ? percent(load) + " of the bit rate" + how + ", stuffed bits at worst" : "";
@@ -48,6 +54,10 @@ std::string strangers(const BusCheck& check) {
     }
     const double possible_bits = check.duration_s() * check.bit_rate();
     const double share = possible_bits > 0 ? bits / possible_bits : 0;
+    if (share <= largest_unknown_load && check.peak_unknown_load() > largest_unknown_peak) {
+        return percent(check.peak_unknown_load()) + " of the bit rate in the busiest 0.2 s, on " +
+               std::to_string(identifiers) + " identifiers that nobody described, first " + first;
+    }
     return share > largest_unknown_load
                ? percent(share) + " of the bit rate on " + std::to_string(identifiers) +
                      " identifiers that nobody described, first " + first
@@ -72,6 +82,10 @@ std::string jumps(const BusCheck& check) {
                (clock.steps() > 1 ? ", or less, " + std::to_string(clock.steps()) + " times" : "") +
                (step_s < 0 ? "" : " (or the whole bus was silent for so long)");
     }
+    if (const std::int64_t step_ns = check.small_clock_step_ns(); step_ns != 0 && text.empty()) {
+        text = formatted("all sources change their phase by %.3g ms at once",
+                         1e-6 * static_cast<double>(step_ns));
+    }
     if (clock.strays() > 0) {
         text +=
             (text.empty() ? "" : "; ") + counted(clock.strays(), " stamps far from those before and after");
@@ -91,6 +105,12 @@ std::string repeated_times(const BusCheck& check) {
                : "";
 }
 
+std::string overtaken(const BusCheck& check) {
+    return is_overtaken(check) && repeated_times(check).empty()
+               ? counted(check.overtaken(), " times a frame was read after one that was stamped later")
+               : "";
+}
+
 struct BusRule {
     const char* name;
     const char* what;
@@ -99,7 +119,7 @@ struct BusRule {
     const char* fix;
 };
 
-constexpr std::array<BusRule, 12> bus_rules{{
+constexpr std::array<BusRule, 13> bus_rules{{
     {"silent_bus", "nothing is sent at all", silence, "candump IFACE; ip -details link show IFACE",
      "the interface up, with the bit rate of the devices; power, cable; the right interface"},
     {"overload", "the bus carries more than it can with a margin", overload,
@@ -141,6 +161,9 @@ constexpr std::array<BusRule, 12> bus_rules{{
      "do not set the clock while recording; stamps of the adapter's hardware"},
     {"time_not_increasing", "time stamps repeat or run backward", repeated_times, "candump -t d IFACE",
      "stamps of the kernel, not of the program that reads"},
+    {"frames_overtaken", "frames are read in another order than they were stamped in", overtaken,
+     "candump -t a IFACE: the stamps go back by less than a period",
+     "one receive queue for all frames of an adapter; one adapter for one bus"},
 }};
 
 struct DeviceRule {
@@ -226,11 +249,16 @@ std::vector<BusFinding> bus_findings(const BusCheck& check) {
     std::ranges::move(source_findings(check), std::back_inserter(findings));
     std::ranges::move(value_findings(check), std::back_inserter(findings));
     const bool sensor = check.sensor() != nullptr;
+    const bool sensor_is_late = std::ranges::any_of(findings, [](const BusFinding& finding) {
+        return (finding.rule == "lost_frames" || finding.rule == "late_frames") &&
+               finding.what.find("sensor") != std::string::npos;
+    });
     for (const DeviceRule& rule : device_rules) {
         // Efforts of joints have their own rules.
         const bool of_sensor =
             rule.reason == hal::Reason::output_saturated || rule.reason == hal::Reason::output_frozen;
-        if (holds(rule, check) && (sensor || !of_sensor)) {
+        const bool explained = sensor_is_late && rule.reason == hal::Reason::output_incomplete;
+        if (holds(rule, check) && (sensor || !of_sensor) && !explained) {
             findings.push_back({rule.name, rule.what,
                                 std::to_string(check.refused(rule.reason)) + " of " +
                                     std::to_string(check.samples()) + " samples: " + hal::name(rule.reason),

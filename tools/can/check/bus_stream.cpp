@@ -15,6 +15,9 @@ constexpr std::size_t intervals_to_infer = 32;
 constexpr double same_period = 0.3;
 constexpr double phase_gain = 0.125;  ///< gain of the phase-locked loop
 constexpr double steady_share = 0.75; ///< share of the first intervals
+constexpr double recent_share = 0.02; ///< of a frame, among those that are recent
+constexpr double shorter_than_a_period = 0.9;
+constexpr double most_off_sequence = 0.4; ///< share of the period: largest distance from the sequence
 
 } // namespace
 
@@ -25,8 +28,13 @@ void BusStream::take(const hal::Frame& frame, double frame_bits) {
     length = frame.length;
     if (first) {
         first_ns = last_ns = frame.stamp_ns;
+        last_frame_ = frame;
         return;
     }
+    const bool repeats = frame.length == last_frame_.length && frame.data == last_frame_.data;
+    const double interval_periods = seconds_of(frame.stamp_ns - last_ns) * expected_hz;
+    copies += repeats && interval_periods < shorter_than_a_period ? 1 : 0;
+    last_frame_ = frame;
     take_interval(frame.stamp_ns - last_ns);
     last_ns = std::max(last_ns, frame.stamp_ns);
 }
@@ -71,14 +79,29 @@ void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns) {
         ++regular_;
         regular_periods_ += periods;
     }
-    if (followed_ == 1 || periods > gap_periods) {
+    if (!phase_known_ || periods > gap_periods) {
         next_ns_ = now_ns + period_ns;
+        phase_known_ = true;
+        in_sequence_ = skipped_ = false;
         return;
     }
     const double skipped = std::round((now_ns - next_ns_) / period_ns);
     missing_ += static_cast<std::int64_t>(skipped);
+    recent_additional_ = std::max(0.0, (1 - recent_share) * recent_additional_ - skipped);
+    largest_recent_ = std::max(largest_recent_, recent_additional_);
     const double due_ns = next_ns_ + skipped * period_ns;
+    const bool late_by_a_period = skipped_ && skipped < 0; // the one before was not the next of the sequence
+    const bool off = late_by_a_period || std::abs(now_ns - due_ns) > most_off_sequence * period_ns;
+    off_sequence_ += off ? 1 : 0;
+    in_sequence_ = !off && skipped == 0;
+    phase_.take(stamp_ns, due_ns, period_ns);
+    skipped_ = skipped > 0;
     next_ns_ = due_ns + phase_gain * (now_ns - due_ns) + period_ns;
+}
+
+void BusStream::forget_phase() noexcept {
+    phase_known_ = false;
+    phase_.interrupt();
 }
 
 double BusStream::rate_hz() const {
@@ -97,6 +120,10 @@ double BusStream::jitter_s() const {
 
 std::uint64_t BusStream::missing() const {
     return static_cast<std::uint64_t>(std::max<std::int64_t>(missing_, 0));
+}
+
+std::uint64_t BusStream::additional() const {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(-missing_, 0));
 }
 
 double BusStream::missing_share() const {

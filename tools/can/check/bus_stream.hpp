@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/frame.hpp"
+#include "tools/can/check/sequence_watch.hpp"
 
 #include <cstdint>
 #include <map>
@@ -27,6 +28,7 @@ class BusStream {
     std::uint64_t rejected = 0; ///< frames rejected by the device's decoder
     /// frames whose time stamp is not later than that of the previous frame
     std::uint64_t not_increasing = 0;
+    std::uint64_t copies = 0; ///< frames with the content of the one before, less than a period after it
     double bits = 0;          ///< bits of all frames, with worst-case bit stuffing
     int length = 0;           ///< bytes of the last frame, or of the expected one
     bool known = false;       ///< the description names its sender
@@ -39,6 +41,9 @@ class BusStream {
     /// Takes the next frame. `frame_bits`: its worst-case length on the wire.
     void take(const hal::Frame& frame, double frame_bits);
 
+    /// Forgets the phase of the sequence: the clock was set.
+    void forget_phase() noexcept;
+
     double rate_hz() const;  ///< 0 if there are fewer than two frames
     double jitter_s() const; ///< standard deviation of the intervals; 0 if there are fewer than three frames
 
@@ -46,6 +51,17 @@ class BusStream {
     /// `gap_periods`.
     std::uint64_t missing() const;
     double missing_share() const; ///< share of all sent frames
+    /// Number of frames that came in addition to the sequence.
+    std::uint64_t additional() const;
+    /// Largest number of them at about one time: among some fifty frames.
+    double additional_at_once() const noexcept { return largest_recent_; }
+    /// Number of frames that came more than 40 % of a period off the sequence.
+    std::uint64_t off_sequence() const noexcept { return off_sequence_; }
+    /// True if the last frame came in its place of the sequence.
+    bool in_sequence() const noexcept { return in_sequence_; }
+    /// Lasting changes of the sequence's phase.
+    const std::vector<PhaseStep>& phase_steps() const noexcept { return phase_.steps(); }
+    SyncAnswers answers; ///< if its frames answer a SYNC
     /// Returns true if the sender keeps the expected period: at least half of the intervals are close to it,
     /// and their mean deviates by at most 5 %.
     bool is_regular() const;
@@ -61,8 +77,15 @@ class BusStream {
     std::vector<std::int64_t> first_intervals_;
     double next_ns_ = 0;       ///< expected time of the next frame in the sequence, relative to `last_ns`
     std::int64_t missing_ = 0; ///< minus the frames that arrived in addition to the sequence
+    bool skipped_ = false;     ///< the last frame skipped a place of the sequence
+    double recent_additional_ = 0, largest_recent_ = 0;
+    bool in_sequence_ = false;
+    std::uint64_t off_sequence_ = 0;
+    PhaseSteps phase_;
+    hal::Frame last_frame_{};
     /// intervals that were followed, and those close to the period
     std::uint64_t followed_ = 0, regular_ = 0;
+    bool phase_known_ = false;
     double regular_periods_ = 0; ///< sum of the regular intervals in periods
 };
 

@@ -21,6 +21,9 @@ constexpr double enough_frames = 20;
 constexpr double jitter_of_two = 0.25;
 constexpr double least_missing = 0.0005; ///< share of the frames; smaller losses are not reported
 constexpr std::uint64_t least_missing_frames = 3;
+constexpr double largest_load_in_time = 0.6; ///< beyond it frames wait for others
+constexpr double least_at_once = 12;         ///< additional frames
+constexpr double least_copies = 0.5;         ///< share of the additional frames
 
 struct Source {
     const BusStreamKey& key;
@@ -40,22 +43,53 @@ struct Source {
         return stream.expected_hz > 0 && static_cast<double>(stream.count) > enough_frames && !stopped();
     }
     bool is_described() const { return runs() && !stream.infers; }
+    /// Returns true for a number of frames that is not an exception.
+    bool many(std::uint64_t frames) const {
+        return frames >= least_missing_frames &&
+               static_cast<double>(frames) >= least_missing * static_cast<double>(stream.count);
+    }
+    /// Returns true if frames come in addition to a regular sequence.
+    bool has_more() const { return is_described() && many(stream.additional()); }
+    bool duplicated() const {
+        return has_more() &&
+               static_cast<double>(stream.copies) >= least_copies * static_cast<double>(stream.additional());
+    }
     bool collides() const {
-        return is_described() &&
-               (ratio() > rate_of_two || (ratio() > largest_rate && jitter_periods() > jitter_of_two));
+        return !duplicated() &&
+               ((has_more() && stream.additional_at_once() > least_at_once) ||
+                (is_described() &&
+                 (ratio() > rate_of_two || (ratio() > largest_rate && jitter_periods() > jitter_of_two))));
+    }
+    bool jitters() const {
+        return keeps_rate() && !stream.several && !collides() && !duplicated() && !loses() && !has_gaps() &&
+               jitter_periods() > largest_jitter;
+    }
+    bool answers_late() const { return is_described() && many(stream.answers.late()); }
+    bool is_late() const {
+        return !answers_late() && check.expected_load() <= largest_load_in_time &&
+               check.small_clock_step_ns() == 0 && !is_overtaken(check) && is_described() && keeps_rate() &&
+               !stream.several && stream.is_regular() && !collides() && !duplicated() && !jitters() &&
+               many(stream.off_sequence());
+    }
+    /// Of several messages with one identifier twice as many are missing after one pause. Frames with a wrong
+    /// stamp are no loss.
+    std::uint64_t enough_missing() const {
+        return (stream.several ? 2 : 1) * least_missing_frames + check.clock().strays();
     }
     /// Returns true if frames of a sender that keeps its period are missing. Frames dropped by this computer
     /// are excluded because they are reported elsewhere.
     bool loses() const {
         return runs() && !collides() && !check.dropped_all_missing() &&
-               stream.missing() >= least_missing_frames && stream.missing_share() >= least_missing &&
+               stream.missing() >= enough_missing() && stream.missing_share() >= least_missing &&
                (stream.several || stream.is_regular());
     }
     bool slow() const { return is_described() && ratio() < least_rate && !loses() && !has_gaps(); }
     /// Returns true if there is a pause that scattered losses do not explain.
     bool has_gaps() const {
-        return runs() && !collides() && gap_periods() > (loses() ? BusStream::gap_periods : largest_gap) &&
-               stream.is_regular();
+        const bool steady = stream.several ? ratio() >= least_rate : stream.is_regular();
+        const bool long_ones = loses() || stream.several || is_overtaken(check);
+        return runs() && !collides() && steady &&
+               gap_periods() > (long_ones ? BusStream::gap_periods : largest_gap);
     }
     bool keeps_rate() const { return runs() && ratio() >= least_rate && ratio() <= largest_rate; }
 };
@@ -87,7 +121,7 @@ struct Rule {
     const char* fix;
 };
 
-constexpr std::array<Rule, 10> rules{{
+constexpr std::array<Rule, 13> rules{{
     {"wrong_identifier", "is not sent; another identifier is, just so",
      [](const Source& s) { return s.silent() && impostor(s) != nullptr; },
      [](const Source& s) {
@@ -112,9 +146,18 @@ constexpr std::array<Rule, 10> rules{{
      [](const Source& s) { return s.collides(); }, rates,
      "unplug the device: frames that still come are another's",
      "give one of the two another identifier; or correct rate_hz in the description"},
+    {"duplicated_frames", "is received twice now and then", [](const Source& s) { return s.duplicated(); },
+     [](const Source& s) {
+         return std::to_string(s.stream.additional()) + " frames more than the sequence has, of which " +
+                std::to_string(s.stream.copies) + " repeat the one before";
+     },
+     "a second computer on the bus: if it has them once, this one's adapter or gateway repeats them",
+     "the gateway's or adapter's routing: no frame may come back to its bus"},
     {"fast_source", "is sent more often than described",
-     [](const Source& s) { return s.is_described() && s.ratio() > largest_rate && !s.collides(); }, rates,
-     "ask the device for its period", "correct rate_hz in the description, or the device's period"},
+     [](const Source& s) {
+         return s.is_described() && s.ratio() > largest_rate && !s.collides() && !s.duplicated();
+     },
+     rates, "ask the device for its period", "correct rate_hz in the description, or the device's period"},
     {"slow_source", "is sent too seldom", [](const Source& s) { return s.slow(); },
      [](const Source& s) {
          return rates(s) +
@@ -137,17 +180,28 @@ constexpr std::array<Rule, 10> rules{{
      },
      "ip -details -statistics link show IFACE: dropped and overrun frames are this computer's losses",
      "read at a real-time priority, lower the load; else look for a loose cable or a device that restarts"},
-    {"jitter", "comes unsteadily",
-     [](const Source& s) {
-         return s.keeps_rate() && !s.stream.several && !s.collides() && !s.loses() && !s.has_gaps() &&
-                s.jitter_periods() > largest_jitter;
-     },
+    {"jitter", "comes unsteadily", [](const Source& s) { return s.jitters(); },
      [](const Source& s) {
          return formatted("intervals of standard deviation %.3g ms", 1e3 * s.stream.jitter_s()) +
                 formatted(" about %.3g ms", 1e3 / s.stream.expected_hz);
      },
      "record on another computer: if it is steady there, this one's stamps are late",
      "give it a lower identifier, lower the load, let drives measure at SYNC; or trigger on timer"},
+    {"late_frames", "has frames that come late", [](const Source& s) { return s.is_late(); },
+     [](const Source& s) {
+         return std::to_string(s.stream.off_sequence()) + " of " + std::to_string(s.stream.count) +
+                formatted(" frames are more than 40 % of %.3g ms off", 1e3 / s.stream.expected_hz);
+     },
+     "the same frames recorded by another computer: if they are in time there, this one's stamps are late",
+     "lower the load; a lower identifier; a gateway or program that does not hold frames back"},
+    {"late_answers", "answers a SYNC at other times than usual, perhaps after the next one",
+     [](const Source& s) { return s.answers_late(); },
+     [](const Source& s) {
+         return std::to_string(s.stream.answers.late()) + " of " + std::to_string(s.stream.count) +
+                formatted(" answers are more than a quarter of %.3g ms off", 1e3 / s.stream.expected_hz);
+     },
+     "candump -t d IFACE: the time from 080 to the answer",
+     "a longer SYNC period, or a lower load, so that all answers come before the next SYNC"},
     {"rejected_frames", "has frames that its device does not send",
      [](const Source& s) { return s.stream.rejected > 0; },
      [](const Source& s) {

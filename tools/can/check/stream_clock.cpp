@@ -21,12 +21,17 @@ std::int64_t difference(std::int64_t a, std::int64_t b) {
 
 std::span<const StreamClock::Timed> StreamClock::take(const hal::Frame& frame) {
     ready_.clear();
+    settle_ahead(frame.stamp_ns);
     const std::int64_t step_ns = difference(sum(frame.stamp_ns, offset_ns_), latest_ns_);
     const std::int64_t mean_ns =
         frames_ > 1 ? (latest_ns_ - first_ns_) / static_cast<std::int64_t>(frames_ - 1) : 0;
     if (frames_ == 0 || (step_ns >= -overtaken_ns && step_ns <= std::max(least_step_ns, 20 * mean_ns))) {
         drop_waiting();
-        follow(frame);
+        if (frames_ > 1 && step_ns > std::max(overtaken_ns, 20 * mean_ns)) {
+            ahead_ = frame;
+        } else {
+            follow(frame);
+        }
         return ready_;
     }
     if (!waiting_.empty() && !goes_on(frame.stamp_ns)) {
@@ -42,6 +47,9 @@ std::span<const StreamClock::Timed> StreamClock::take(const hal::Frame& frame) {
 std::span<const StreamClock::Timed> StreamClock::finish() {
     constexpr std::size_t convincing = 3;
     ready_.clear();
+    if (ahead_) {
+        settle_ahead(ahead_->stamp_ns);
+    }
     waiting_.size() >= convincing ? adopt() : drop_waiting();
     return ready_;
 }
@@ -49,6 +57,20 @@ std::span<const StreamClock::Timed> StreamClock::finish() {
 std::int64_t StreamClock::time_of(std::int64_t stamp_ns) const noexcept {
     const std::int64_t time_ns = sum(stamp_ns, offset_ns_);
     return frames_ == 0 ? time_ns : std::max(time_ns, latest_ns_);
+}
+
+/// Follows the frame that is ahead, or drops it if the next frame does not go on from it.
+void StreamClock::settle_ahead(std::int64_t stamp_ns) {
+    if (!ahead_) {
+        return;
+    }
+    if (difference(stamp_ns, ahead_->stamp_ns) >= -overtaken_ns) {
+        follow(*ahead_);
+    } else {
+        ready_.push_back({*ahead_, true});
+        ++strays_;
+    }
+    ahead_.reset();
 }
 
 bool StreamClock::goes_on(std::int64_t stamp_ns) const noexcept {

@@ -4,6 +4,7 @@
 #include "dfdyn/hal/frame.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,10 +13,11 @@ namespace dfdyn::tools {
 /// Removes jumps from the time stamps of a bus. A clock that was set, or a single wrong time stamp, would
 /// otherwise look like silence, losses or slow sources.
 ///
-/// A frame waits if its time stamp is more than `overtaken_ns` behind the latest, or far ahead of it. If the
-/// following frames continue from the old time stamps, it was an outlier. If `adopt_after` frames continue
-/// from the new one, the clock was set, and time continues without the step. In a recording, a silence of the
-/// same length cannot be distinguished from that. Memory: `adopt_after` frames.
+/// A frame far ahead of the latest waits for the next one: if that is behind it, its stamp was an outlier.
+/// Frames wait, too, if their time stamps are more than `overtaken_ns` behind the latest, or farther ahead.
+/// If the following frames continue from the old time stamps, it was an outlier. If `adopt_after` frames
+/// continue from the new one, the clock was set, and time continues without the step. In a recording, a
+/// silence of the same length cannot be distinguished from that. Memory: `adopt_after` frames.
 class StreamClock {
   public:
     static constexpr std::int64_t overtaken_ns = 5'000'000;
@@ -47,7 +49,9 @@ class StreamClock {
     void follow(hal::Frame frame);
     void adopt();
     void drop_waiting();
+    void settle_ahead(std::int64_t stamp_ns);
 
+    std::optional<hal::Frame> ahead_;
     std::vector<hal::Frame> waiting_;
     std::vector<Timed> ready_;
     std::int64_t offset_ns_ = 0;

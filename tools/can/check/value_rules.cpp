@@ -3,8 +3,10 @@
 #include "tools/base/text/number.hpp"
 #include "tools/can/check/bus_check.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace dfdyn::tools {
 
@@ -12,6 +14,7 @@ namespace {
 
 /// ratio to the described rate; above it, values of two senders may alternate
 constexpr double rate_of_one = 1.02;
+constexpr std::uint64_t most_additional = 2; ///< frames beside a sequence
 
 std::string share_text(std::uint64_t count, std::uint64_t of, const char* what) {
     return std::to_string(count) + " of " + std::to_string(of) + " " + what + " (" +
@@ -21,6 +24,7 @@ std::string share_text(std::uint64_t count, std::uint64_t of, const char* what) 
 struct Joint {
     const ValueWatch& watch;
     std::uint64_t restarts;
+    std::vector<JumpCause> causes; ///< of its jumps
 };
 
 struct JointRule {
@@ -40,25 +44,64 @@ std::string of_efforts(const Joint& joint, std::uint64_t count) {
     return share_text(count, joint.watch.efforts(), "efforts");
 }
 
-constexpr std::array<JointRule, 7> joint_rules{{
+std::uint64_t caused_by(const Joint& joint, JumpCause cause) {
+    return static_cast<std::uint64_t>(std::ranges::count(joint.causes, cause));
+}
+
+constexpr std::array<JointRule, 12> joint_rules{{
     {"device_restarted", "has a board that restarted while it sent", false,
      [](const Joint& joint) { return joint.restarts; },
      [](const Joint&, std::uint64_t count) { return std::to_string(count) + " boot-ups between its values"; },
      "candump IFACE,700:780 shows 00, the boot-up", "check the board's supply; look up its last error"},
     {"position_wrap", "has an encoder that begins anew after a turn", false,
-     [](const Joint& joint) { return joint.watch.wraps(); },
+     [](const Joint& joint) { return caused_by(joint, JumpCause::wrap); },
      [](const Joint& joint, std::uint64_t count) {
          return of_positions(joint, count) + " are a turn away from the one before";
      },
      "turn the joint by hand past that angle", "let the device count turns, or move its zero; zero_rad"},
     {"position_jump", "has positions that it cannot have reached", false,
-     [](const Joint& joint) { return joint.watch.jumps() - joint.watch.wraps(); },
+     [](const Joint& joint) { return caused_by(joint, JumpCause::unknown); },
      [](const Joint& joint, std::uint64_t count) {
          return of_positions(joint, count) +
                 formatted(" are far from the one before, by up to %.3g rad", joint.watch.largest_jump_rad());
      },
      "read the angle with the maker's own program before and after",
      "a board that restarts loses its zero; a second sender; a loose encoder cable"},
+    {"zero_lost", "has an encoder that began anew at its zero", false,
+     [](const Joint& joint) { return caused_by(joint, JumpCause::zero_lost); },
+     [](const Joint&, std::uint64_t count) {
+         return std::to_string(count) + " times its positions go on from the device's own zero, far from the "
+                                        "one before";
+     },
+     "read the angle with the maker's own program before and after switching the board off and on",
+     "check the board's supply; set its zero, or use an absolute encoder; start the program again"},
+    {"bits_flipped", "has single positions that are far off", false,
+     [](const Joint& joint) { return caused_by(joint, JumpCause::bits_flipped); },
+     [](const Joint&, std::uint64_t count) {
+         return std::to_string(count) + " jumps, after each of which the position comes back at once";
+     },
+     "the checksum of CAN finds what happens on the wire: read the device's own value beside its frames",
+     "memory of the device or of a gateway; the encoder's cable"},
+    {"bit_stuck", "has positions that are one bit off for a time", false,
+     [](const Joint& joint) { return caused_by(joint, JumpCause::bit_stuck); },
+     [](const Joint& joint, std::uint64_t count) {
+         return std::to_string(count) +
+                formatted(" jumps of one bit, by up to %.3g rad", joint.watch.largest_jump_rad());
+     },
+     "turn the joint slowly: the same bit never changes (candump -b IFACE)",
+     "a line of a parallel encoder; the encoder's memory"},
+    {"frames_replayed", "shows positions of an earlier time", false,
+     [](const Joint& joint) { return caused_by(joint, JumpCause::frames_replayed); },
+     [](const Joint&, std::uint64_t count) {
+         return std::to_string(count) + " jumps to positions that repeat earlier ones, one after the other";
+     },
+     "stop all programs that send on this bus, then look again", "stop the program that replays a log here"},
+    {"nodes_swapped", "shows the positions of another joint", false,
+     [](const Joint& joint) { return caused_by(joint, JumpCause::nodes_swapped); },
+     [](const Joint&, std::uint64_t count) {
+         return std::to_string(count) + " jumps to where another joint was, which jumped to this one at once";
+     },
+     "move the joint by hand: the other joint's bytes change", "the identifiers of the two boards"},
     {"position_zeros", "shows zeros between other positions", false,
      [](const Joint& joint) { return joint.watch.zeros(); },
      [](const Joint& joint, std::uint64_t count) { return of_positions(joint, count) + " are exactly 0"; },
@@ -84,14 +127,23 @@ constexpr std::array<JointRule, 7> joint_rules{{
      "a larger unit in the drive's PDO; a slower motion, a smaller load"},
 }};
 
+/// Returns false if values of two senders may alternate.
+bool has_one_sender(const BusCheck& check, int joint) {
+    const BusStream* const stream = check.position_stream(static_cast<std::size_t>(joint));
+    return stream == nullptr || (stream->rate_hz() <= rate_of_one * stream->expected_hz &&
+                                 (stream->several || stream->additional() <= most_additional));
+}
+
 } // namespace
 
 std::vector<BusFinding> value_findings(const BusCheck& check) {
     std::vector<BusFinding> findings;
+    std::vector<std::vector<PositionJump>> jumps;
+    std::ranges::transform(check.joints(), std::back_inserter(jumps), &ValueWatch::first_jumps);
+    const std::vector<std::vector<JumpCause>> causes = causes_of(jumps);
     for (std::size_t joint = 0; joint < check.joints().size(); ++joint) {
-        const BusStream* const stream = check.position_stream(joint);
-        const bool one_sender = stream == nullptr || stream->rate_hz() <= rate_of_one * stream->expected_hz;
-        const Joint watched{check.joints()[joint], check.restarts(joint)};
+        const bool one_sender = has_one_sender(check, static_cast<int>(joint));
+        const Joint watched{check.joints()[joint], check.restarts(joint), causes[joint]};
         for (const JointRule& rule : joint_rules) {
             const std::uint64_t count = rule.count(watched);
             const bool matters = !rule.of_effort || check.sensor() == nullptr;
@@ -102,7 +154,10 @@ std::vector<BusFinding> value_findings(const BusCheck& check) {
         }
     }
     for (const BusBoard& board : check.boards()) {
-        std::ranges::move(board.board->findings(), std::back_inserter(findings));
+        if (std::ranges::all_of(board.joint,
+                                [&](int joint) { return joint < 0 || has_one_sender(check, joint); })) {
+            std::ranges::move(board.board->findings(), std::back_inserter(findings));
+        }
     }
     if (check.sensor() != nullptr) {
         std::ranges::move((*check.sensor())->findings(), std::back_inserter(findings));

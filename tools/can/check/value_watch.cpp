@@ -15,7 +15,12 @@ constexpr std::uint64_t least_equal = 20; ///< consecutive positions
 constexpr double least_equal_s = 0.1;
 constexpr std::uint64_t least_equal_efforts = 100; ///< consecutive efforts
 constexpr double least_equal_efforts_s = 0.5;
+/// A shorter run of equal efforts, if it is many times as long as the longest before.
+constexpr std::uint64_t least_equal_short = 50;
+constexpr std::uint64_t times_the_longest = 4;
 constexpr double least_motion_rad = 0.02;
+constexpr std::size_t most_jumps = 64;
+constexpr double silence_periods = 3;
 
 } // namespace
 
@@ -26,7 +31,8 @@ void ValueWatch::take(const hal::JointValue& value) {
     if (value.position_reason == hal::Reason::ok) {
         take_position(value);
     } else if (value.position_reason != hal::Reason::waiting_for_position) {
-        started_ = false; // the device reports the fault itself
+        after_fault_ = started_; // which the device reports itself
+        started_ = false;
     }
     if (value.effort_reason != hal::Reason::no_output) {
         take_effort(value);
@@ -36,26 +42,93 @@ void ValueWatch::take(const hal::JointValue& value) {
 void ValueWatch::take_position(const hal::JointValue& value) {
     ++positions_;
     const std::int64_t step_ns = value.stamp_ns - stamp_ns_;
-    const double step_rad = value.position_rad - position_rad_;
+    const double from_rad = position_rad_;
+    const double step_rad = value.position_rad - from_rad;
     const bool comparable = started_ && step_ns > 0;
     started_ = true;
     stamp_ns_ = comparable ? value.stamp_ns : std::max(stamp_ns_, value.stamp_ns);
     position_rad_ = value.position_rad;
     const bool was_zero = zero_;
-    zero_ = value.raw_zero && (was_zero || (comparable && jumped(step_ns, step_rad)));
-    zeros_ += zero_ ? 1 : 0;
+    zero_ =
+        value.raw_zero && (was_zero || after_fault_ ||
+                           (comparable && (jumped(step_ns, step_rad) || restarts(value, step_ns, step_rad))));
+    after_fault_ = false;
+    before_zero_rad_ = zero_ && !was_zero ? from_rad : before_zero_rad_;
     if (!comparable || zero_ || was_zero) {
-        equal_ = 0;
+        take_zero(value, was_zero);
         return;
     }
-    take_step(step_ns, step_rad);
+    take_step(value, step_ns, step_rad);
     lowest_rad_ = std::min(lowest_rad_, position_rad_);
     highest_rad_ = std::max(highest_rad_, position_rad_);
 }
 
-void ValueWatch::take_step(std::int64_t step_ns, double step_rad) {
+/// Counts zeros between other positions. Those from which the next positions go on are the first ones of an
+/// encoder that counts from there.
+void ValueWatch::take_zero(const hal::JointValue& value, bool was_zero) {
+    equal_ = 0;
+    zeros_in_a_row_ = zero_ ? zeros_in_a_row_ + 1 : zeros_in_a_row_;
+    zeros_ += zero_ ? 1 : 0;
+    if (zero_ || !was_zero) {
+        return;
+    }
+    if (!jumped(value.stamp_ns - stamp_ns_, value.from_zero_rad)) {
+        zeros_ -= zeros_in_a_row_;
+        count_jump(true, value.position_rad - before_zero_rad_);
+        note_jump(value, before_zero_rad_);
+    }
+    zeros_in_a_row_ = 0;
+}
+
+void ValueWatch::note_jump(const hal::JointValue& value, double from_rad) {
+    if (first_jumps_.size() < most_jumps) {
+        first_jumps_.push_back({.time_ns = value.stamp_ns,
+                                .from_rad = from_rad,
+                                .to_rad = value.position_rad,
+                                .count_rad = value.step_rad,
+                                .from_zero_rad = value.from_zero_rad,
+                                .turn = is_turn(value.position_rad - from_rad)});
+    }
+}
+
+/// Returns true if the positions after a silence begin at the device's zero, to which the joint's motion does
+/// not lead.
+bool ValueWatch::restarts(const hal::JointValue& value, std::int64_t step_ns, double step_rad) const {
+    const double silence_s = seconds_of(step_ns);
+    const double rounding_rad = few_counts * value.step_rad;
+    const double in_a_period_rad = std::abs(last_speed_rad_per_s_) * mean_interval_s();
+    const double reach_rad =
+        std::abs(last_speed_rad_per_s_) * silence_s + 0.5 * limits_.stop * silence_s * silence_s;
+    const bool exactly = value.raw_zero && std::abs(step_rad) > in_a_period_rad + rounding_rad;
+    const bool beyond_reach = std::abs(step_rad) > reach_rad + rounding_rad &&
+                              std::abs(value.from_zero_rad) <= 2 * in_a_period_rad + rounding_rad;
+    return is_silence(step_ns) && (exactly || beyond_reach);
+}
+
+bool ValueWatch::is_silence(std::int64_t step_ns) const {
+    return static_cast<double>(step_ns) > silence_periods * mean_interval_ns_;
+}
+
+/// A silence changes the mean interval by little.
+void ValueWatch::follow_interval(std::int64_t step_ns) {
+    const auto interval_ns = static_cast<double>(step_ns);
+    const double most_ns = mean_interval_ns_ > 0 ? silence_periods * mean_interval_ns_ : interval_ns;
+    mean_interval_ns_ = mean_interval_ns_ > 0 ? mean_interval_ns_ : interval_ns;
+    mean_interval_ns_ += 0.1 * (std::min(interval_ns, most_ns) - mean_interval_ns_);
+}
+
+void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, double step_rad) {
     const double step_s = seconds_of(step_ns);
-    mean_interval_ns_ += 0.1 * (static_cast<double>(step_ns) - mean_interval_ns_);
+    const bool far = std::abs(step_rad) > few_counts * smallest_step_rad_;
+    const bool thaws = is_long() && far && std::abs(step_rad) / step_s > limits_.acceleration * step_s;
+    const bool jump = !thaws && (jumped(step_ns, step_rad) || restarts(value, step_ns, step_rad));
+    if (jump) {
+        note_jump(value, value.position_rad - step_rad + last_speed_rad_per_s_ * mean_interval_s());
+    }
+    if (replayed_.take(value.position_rad, jump) && !first_jumps_.empty()) {
+        first_jumps_.back().replays = true;
+    }
+    follow_interval(step_ns);
     if (step_rad == 0) {
         if (equal_ == 0) {
             equal_from_ns_ = stamp_ns_;
@@ -65,9 +138,7 @@ void ValueWatch::take_step(std::int64_t step_ns, double step_rad) {
         return;
     }
     smallest_step_rad_ = std::min(smallest_step_rad_, std::abs(step_rad));
-    const bool jump = jumped(step_ns, step_rad);
-    const bool far = std::abs(step_rad) > few_counts * smallest_step_rad_;
-    if (is_long() && far && std::abs(step_rad) / step_s > limits_.acceleration * step_s) {
+    if (thaws) {
         frozen_positions_ += equal_;
     } else {
         frozen_positions_ += pending_frozen();
@@ -81,13 +152,17 @@ void ValueWatch::take_step(std::int64_t step_ns, double step_rad) {
     equal_ = 0;
 }
 
+/// Returns true for whole turns of the encoder.
+bool ValueWatch::is_turn(double step_rad) const {
+    const double turns = turn_rad_ > 0 ? step_rad / turn_rad_ : 0.5;
+    return std::abs(turns - std::round(turns)) < 0.05 && std::abs(turns) > 0.5;
+}
+
 void ValueWatch::count_jump(bool jump, double step_rad) {
     if (!jump) {
         return;
     }
-    const double turns = turn_rad_ > 0 ? step_rad / turn_rad_ : 0.5;
     ++jumps_;
-    wraps_ += std::abs(turns - std::round(turns)) < 0.05 ? 1 : 0;
     largest_jump_rad_ = std::max(largest_jump_rad_, std::abs(step_rad));
 }
 
@@ -121,6 +196,7 @@ void ValueWatch::take_effort(const hal::JointValue& value) {
     ++efforts_;
     saturated_efforts_ += value.effort_reason == hal::Reason::output_saturated ? 1 : 0;
     if (!effort_started_ || value.effort != effort_) {
+        longest_equal_efforts_ = std::max(longest_equal_efforts_, equal_efforts_);
         equal_efforts_ = 0;
         lowest_rad_ = highest_rad_ = position_rad_;
         effort_changed_ns_ = value.stamp_ns;
@@ -128,8 +204,11 @@ void ValueWatch::take_effort(const hal::JointValue& value) {
     effort_started_ = true;
     effort_ = value.effort;
     ++equal_efforts_;
-    if (equal_efforts_ >= least_equal_efforts && highest_rad_ - lowest_rad_ > least_motion_rad &&
-        seconds_of(value.stamp_ns - effort_changed_ns_) >= least_equal_efforts_s &&
+    const bool long_run = equal_efforts_ >= least_equal_efforts &&
+                          seconds_of(value.stamp_ns - effort_changed_ns_) >= least_equal_efforts_s;
+    const bool unusual = longest_equal_efforts_ > 0 && equal_efforts_ >= least_equal_short &&
+                         equal_efforts_ >= times_the_longest * longest_equal_efforts_;
+    if ((long_run || unusual) && highest_rad_ - lowest_rad_ > least_motion_rad &&
         value.effort_reason == hal::Reason::ok) {
         ++frozen_efforts_;
     }

@@ -3,6 +3,7 @@
 
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/gate/motion_line.hpp"
+#include "tools/can/check/position_jumps.hpp"
 
 #include <cstdint>
 
@@ -22,10 +23,11 @@ class ValueWatch {
     std::uint64_t positions() const noexcept { return positions_; }
     std::uint64_t efforts() const noexcept { return efforts_; }
 
-    /// Number of steps between two positions that no joint can make, and how many of them were whole turns.
+    /// Number of steps between two positions that no joint can make.
     std::uint64_t jumps() const noexcept { return jumps_; }
-    std::uint64_t wraps() const noexcept { return wraps_; }
     double largest_jump_rad() const noexcept { return largest_jump_rad_; }
+    /// The first of these steps, and positions after a silence that begin at the device's zero.
+    const std::vector<PositionJump>& first_jumps() const noexcept { return first_jumps_; }
     /// True if the last position was exactly 0 counts.
     bool at_zero() const noexcept { return at_zero_; }
     /// Number of positions of exactly 0 counts that are far from the preceding positions.
@@ -39,7 +41,14 @@ class ValueWatch {
 
   private:
     void take_position(const hal::JointValue& value);
-    void take_step(std::int64_t step_ns, double step_rad);
+    void take_zero(const hal::JointValue& value, bool was_zero);
+    void take_step(const hal::JointValue& value, std::int64_t step_ns, double step_rad);
+    bool restarts(const hal::JointValue& value, std::int64_t step_ns, double step_rad) const;
+    bool is_turn(double step_rad) const;
+    void note_jump(const hal::JointValue& value, double from_rad);
+    bool is_silence(std::int64_t step_ns) const;
+    void follow_interval(std::int64_t step_ns);
+    double mean_interval_s() const noexcept { return 1e-9 * mean_interval_ns_; }
     bool jumped(std::int64_t step_ns, double step_rad) const;
     void count_jump(bool jump, double step_rad);
     double stop_within(double step_s) const;
@@ -50,12 +59,17 @@ class ValueWatch {
     double turn_rad_;
     hal::MotionLimits limits_;
     std::uint64_t positions_ = 0, efforts_ = 0;
-    std::uint64_t jumps_ = 0, wraps_ = 0, zeros_ = 0;
+    std::uint64_t jumps_ = 0, zeros_ = 0;
     double largest_jump_rad_ = 0;
+    std::vector<PositionJump> first_jumps_; ///< at most `most_jumps`
+    ReplayedPositions replayed_;
+    double before_zero_rad_ = 0; ///< last position before a zero of `zeros_`
+    std::uint64_t zeros_in_a_row_ = 0;
 
     bool started_ = false;
     bool at_zero_ = false;
-    bool zero_ = false; ///< the last position was one of `zeros_`
+    bool after_fault_ = false; ///< the device reported a fault instead of the last position
+    bool zero_ = false;        ///< the last position was one of `zeros_`
     std::int64_t stamp_ns_ = 0;
     double position_rad_ = 0;
     double mean_interval_ns_ = 0; ///< mean interval between positions
@@ -71,6 +85,7 @@ class ValueWatch {
     bool effort_started_ = false;
     double effort_ = 0;
     std::uint64_t equal_efforts_ = 0;
+    std::uint64_t longest_equal_efforts_ = 0; ///< of the runs before
     double lowest_rad_ = 0, highest_rad_ = 0; ///< range of positions since the last change of the effort
     std::int64_t effort_changed_ns_ = 0;
     std::uint64_t frozen_efforts_ = 0, saturated_efforts_ = 0;

@@ -47,6 +47,8 @@ void VelocityCheck::add(double expected_rad, double moved_rad, double step_s) no
         return;
     }
     ++steps_;
+    velocities_ += expected_rad / step_s;
+    velocity_squares_ += expected_rad / step_s * (expected_rad / step_s);
     expected_ += expected_rad;
     moved_ += moved_rad;
     squares_ += expected_rad * expected_rad;
@@ -59,6 +61,12 @@ void VelocityCheck::add(double expected_rad, double moved_rad, double step_s) no
 bool VelocityCheck::stands() const noexcept {
     constexpr double standing = 0.02;
     return distance_rad_ < standing * expected_distance_rad_;
+}
+
+/// A constant velocity, with steps of different lengths, shows nothing.
+bool VelocityCheck::varies() const noexcept {
+    const double mean = velocities_ / std::max(steps_, 1.0);
+    return velocity_squares_ - velocities_ * mean > least_variation * velocity_squares_;
 }
 
 double VelocityCheck::ratio() const noexcept {
@@ -84,7 +92,8 @@ double VelocityCheck::ratio_error() const noexcept {
 }
 
 bool VelocityCheck::is_sure() const noexcept {
-    return steps_ >= least_steps && std::max(distance_rad_, expected_distance_rad_) >= least_distance_rad &&
+    return steps_ >= least_steps && (stands() || varies()) &&
+           std::max(distance_rad_, expected_distance_rad_) >= least_distance_rad &&
            errors_to_be_sure * ratio_error() < std::max(std::abs(ratio()), largest_deviation);
 }
 

@@ -36,9 +36,11 @@ class VelocityCheck {
     bool has_position_ = false, has_velocity_ = false;
     void add(double expected_rad, double moved_rad, double step_s) noexcept;
     bool stands() const noexcept;
+    bool varies() const noexcept;
 
     /// Sums over the steps: of the expected and the measured change (rad), and of their products.
     double steps_ = 0, expected_ = 0, moved_ = 0, squares_ = 0, products_ = 0, moved_squares_ = 0;
+    double velocities_ = 0, velocity_squares_ = 0; ///< sums of the reported velocities
     double distance_rad_ = 0, expected_distance_rad_ = 0;
 };
 

@@ -8,6 +8,8 @@
 #include "tools/can/log/bus_traffic.hpp"
 #include "tools/model/run_time/host_model.hpp"
 #include "tools/model/run_time/runtime_estimator.hpp"
+#include "tools/replay/replay_can.hpp"
+#include "tools/replay/replay_csv.hpp"
 
 #include <chrono>
 #include <deque>
@@ -186,6 +188,60 @@ Outcome listen_to(std::int64_t rows, const std::string& trigger) {
     return listener.outcome;
 }
 
+/// Writes the rows of a live replay, and notes the memory when a tick is far beyond the first that is
+/// forgotten.
+class WatchedRows final : public TickSink {
+  public:
+    WatchedRows(const std::filesystem::path& path, const TrainedModel& model, std::int64_t full_after)
+        : file_(path, model), full_after_(full_after) {}
+
+    void take(const ReplayedRecording& replayed, std::size_t tick) override {
+        file_.take(replayed, tick);
+        ++rows;
+        pages_ = rows == full_after_ ? resident_pages() : pages_;
+    }
+    void flush() override { file_.flush(); }
+    std::int64_t pages_grown() const { return resident_pages() - pages_; }
+
+    std::int64_t rows = 0;
+
+  private:
+    ReplayCsvFile file_;
+    std::int64_t full_after_;
+    std::int64_t pages_ = 0;
+};
+
+/// Replays the arm as `replay --can` does, keeping `kept` ticks. Checks that each tick is written and that
+/// the memory stays what it was.
+void check_live_replay(std::int64_t rows, std::size_t kept, const std::filesystem::path& csv) {
+    const TemporaryDirectory directory;
+    const BusDescription description =
+        read_bus_description(directory.write("bus.json", bus_of_eight + set + "}"));
+    std::mt19937_64 engine(1);
+    const TrainedModel model =
+        dfdyn::tests::unlearned_model(engine, 8, 1e-3, output_names(OutputKind::wrench, 8), 10);
+    const auto estimator = make_estimator(model, true);
+    WatchedRows sink(csv, model, 3 * static_cast<std::int64_t>(kept));
+    CanReplayer replayer(*estimator, {&model, 1}, description, "bus", 0, {kept, &sink});
+    ArmInMotion arm(description, rows);
+    dfdyn::hal::ReplayBus bus(arm);
+    std::array<dfdyn::hal::Frame, 1> one;
+    while (!bus.ended()) {
+        bus.advance_to(bus.next_stamp_ns());
+        for (const dfdyn::hal::Frame& frame : bus.drain(one)) {
+            replayer.sampler().take(frame, bus.state(), bus.counters());
+        }
+    }
+    const std::int64_t grown = sink.pages_grown();
+    const ReplayedRecording replayed = replayer.finish(bus.counters()).replayed;
+    CHECK(sink.rows >= rows - 1);
+    CHECK(static_cast<std::int64_t>(replayed.forgotten + replayed.time_s.size()) == sink.rows);
+    CHECK(replayed.time_s.size() < 2 * kept);
+    if (!dfdyn::tests::slow_build) {
+        CHECK(grown < 64); // 0.25 MiB
+    }
+}
+
 void check(const Outcome& outcome, std::int64_t rows) {
     CHECK(outcome.valid <= rows - 9); // a source qualifies after ten readings
     CHECK(outcome.valid >= rows - 12);
@@ -213,6 +269,18 @@ TEST_CASE("on a loaded bus a timer's samples are regular and most wrenches are l
     CHECK(outcome.unlearned == 0);
     CHECK(outcome.learned > 16'000); // two wrenches between two ticks count as one
     CHECK(outcome.valid + outcome.not_new >= 19'980);
+}
+
+TEST_CASE("a live replay writes each tick and keeps the memory that it has when the first is forgotten") {
+    const TemporaryDirectory directory;
+    const auto csv = directory.path() / "out.csv";
+    check_live_replay(12'000, 1'000, csv);
+    const std::string text = dfdyn::tests::file_content(csv);
+    CHECK(std::ranges::count(text, '\n') >= 12'000);
+}
+
+TEST_CASE("a live replay of an hour at 1 kHz keeps the memory of its first minutes", "[.long]") {
+    check_live_replay(3'600'000, 32'768, "/dev/null");
 }
 
 TEST_CASE("an hour of eight joints and a wrench at 1 kHz on a bus at 80 % load: every sample once and true "

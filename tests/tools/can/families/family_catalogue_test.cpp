@@ -2,7 +2,7 @@
 #include "tools/can/families/family_catalogue.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tests/tools/can/bus_check_support.hpp"
+#include "tests/tools/can/example_arms.hpp"
 #include "tests/tools/support/name_literals.hpp"
 #include "tools/can/arm/torque_frames.hpp"
 #include "tools/can/description/bus_fields.hpp"
@@ -34,32 +34,6 @@ std::string documented_rows(const std::string& header) {
     const std::string text = read_file(project / "docs/reference/can.md");
     const std::size_t begin = text.find('\n', text.find("| --- |", text.find(header))) + 1;
     return text.substr(begin, text.find("\n\n", begin) + 1 - begin);
-}
-
-/// All example arms: joints of one family with a sensor of another, or with their own efforts.
-std::vector<BusDescription> examples() {
-    std::vector<BusDescription> arms;
-    const auto add = [&](const JointFamily& joints, std::string_view output) {
-        const std::string trigger = joints.sync != nullptr ? "sync" : "set";
-        arms.push_back(described(R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 500,
-            "trigger": {"on": ")" +
-                                 trigger + R"("}, "joints": )" + std::string(joints.example) +
-                                 R"(, "output": )" + std::string(output) + "}"));
-    };
-    for (const JointFamily& joints : joint_families()) {
-        if (joints.example.empty()) {
-            continue;
-        }
-        for (const SensorFamily& sensor : sensor_families()) {
-            if (!sensor.example.empty()) {
-                add(joints, sensor.example);
-            }
-        }
-        if (measures_efforts(arms.back().boards)) {
-            add(joints, R"({"family": "efforts", "quantity": "tau"})");
-        }
-    }
-    return arms;
 }
 
 TEST_CASE("no name of a device family is a literal outside its file") {
@@ -125,7 +99,7 @@ TEST_CASE("every DBC file belongs to a family") {
 }
 
 TEST_CASE("arms of every family: buscheck finds no fault in the log that convert writes") {
-    const std::vector<BusDescription> arms = examples();
+    const std::vector<BusDescription> arms = example_arms();
     CHECK(arms.size() >= 14);
     for (const BusDescription& arm : arms) {
         CAPTURE(arm.joint_family->name, arm.output_range.size());
@@ -134,7 +108,7 @@ TEST_CASE("arms of every family: buscheck finds no fault in the log that convert
 }
 
 TEST_CASE("arms of every family: a torque command is received as it was sent") {
-    for (const BusDescription& arm : examples()) {
+    for (const BusDescription& arm : example_arms()) {
         CAPTURE(arm.joint_family->name);
         TorqueFrames commands(arm);
         const std::vector<double> torque{1.5, -2.25};

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each fault of the legend (docs/reference/faults.md), alone in the frames of each family: buscheck reports
+// it by the findings that the legend names, and by no other.
+#include "tests/hal/campaign/fault_actions.hpp"
+#include "tests/tools/can/bus_check_support.hpp"
+#include "tests/tools/can/example_arms.hpp"
+#include "tests/tools/support/name_literals.hpp"
+#include "tools/can/arm/device_frames.hpp"
+#include "tools/can/families/family.hpp"
+
+#include <map>
+
+namespace bus_check_legend_test {
+
+using namespace dfdyn::tests;
+using dfdyn::tools::DeviceFrames;
+namespace hal = dfdyn::hal;
+
+/// Findings of a row of the legend: at least one of them must be reported, and no other.
+using Expected = std::vector<std::string>;
+
+/// Column `buscheck` of the legend by the fault's number.
+std::map<int, Expected> legend() {
+    std::map<int, Expected> rows;
+    std::istringstream text(dfdyn::tools::read_file(project / "docs/reference/faults.md"));
+    for (std::string line; std::getline(text, line) && line != "## Tested one by one";) {
+        std::vector<std::string> cells;
+        std::istringstream parts(line);
+        for (std::string cell; std::getline(parts, cell, '|');) {
+            cells.push_back(cell);
+        }
+        if (cells.size() < 9 || cells[1].find_first_of("0123456789") == std::string::npos) {
+            continue;
+        }
+        Expected& names = rows[std::stoi(cells[1])];
+        std::istringstream quoted(cells[6]);
+        for (std::string word; std::getline(quoted, word, '`') && std::getline(quoted, word, '`');) {
+            names.push_back(word);
+        }
+    }
+    return rows;
+}
+
+wire::Frames frames_of(const hal::FrameList& list) {
+    return {list.frame, static_cast<std::size_t>(list.count)};
+}
+
+hal::Wrench wrench_of(const BusDescription& description, const wire::SixWords& raw) {
+    hal::Wrench wrench{};
+    for (std::size_t k = 0; k < wrench.size(); ++k) {
+        wrench[k] = description.output_range[k].highest * static_cast<double>(raw[k]) / 32768;
+    }
+    return wrench;
+}
+
+/// Adds what the boards send.
+void add_boards(const BusDescription& description, CampaignArm& arm) {
+    arm.boards = description.boards.size();
+    arm.frames = [boards = description.boards](std::size_t board, const wire::Joints& joints) {
+        std::array<hal::JointValue, 2> values{};
+        for (std::size_t i = 0; i < 2; ++i) {
+            if (const int joint = boards[board].joint[i]; joint != hal::unused_joint) {
+                values[i].position_rad = joints[static_cast<std::size_t>(joint)].position_rad;
+                values[i].velocity = joints[static_cast<std::size_t>(joint)].velocity;
+                values[i].effort = joints[static_cast<std::size_t>(joint)].effort;
+            }
+        }
+        return frames_of(boards[board].board.encode(values));
+    };
+    for (std::size_t board = 0; board < arm.boards; ++board) {
+        dfdyn::tools::BusBoard decoder = description.boards[board];
+        const wire::Frames frames = arm.frames(board, {});
+        for (std::size_t part = 0; part < frames.count; ++part) {
+            const hal::Decoded decoded = decoder.board.decode(frames.frame[part]);
+            for (int i = 0; i < decoded.joints; ++i) {
+                const hal::JointValue& value = decoded.joint[static_cast<std::size_t>(i)];
+                if (value.position_reason != hal::Reason::waiting_for_position) {
+                    arm.step_rad[static_cast<std::size_t>(value.joint)] = value.step_rad;
+                    arm.zero_rad[static_cast<std::size_t>(value.joint)] =
+                        value.position_rad - value.from_zero_rad;
+                }
+            }
+        }
+    }
+    arm.find_fields();
+}
+
+/// A described arm as the faults of the campaign change it.
+CampaignArm campaign_arm(const BusDescription& description) {
+    CampaignArm arm;
+    arm.name = description.joint_family->name;
+    arm.synchronous = description.synchronous;
+    add_boards(description, arm);
+    const DeviceFrames devices(description);
+    arm.status = devices.heartbeats();
+    if (description.sensor) {
+        arm.output_range = description.output_range.front().highest;
+        arm.wrench = [description](const wire::SixWords& raw) {
+            return frames_of(description.sensor->encode(wrench_of(description, raw)));
+        };
+        arm.saturate_wrench = [description](Frame& frame, std::size_t half) {
+            hal::Wrench beyond{};
+            beyond.fill(1e6);
+            frame.data = description.sensor->encode(beyond).frame.at(half).data;
+        };
+    }
+    return arm;
+}
+
+/// The log of an arm that first reports the full scales of its sensor.
+Frames recorded(const BusDescription& description, const Traffic& traffic) {
+    Frames frames = DeviceFrames(description).full_scales();
+    std::int64_t stamp_ns = traffic.front().frame.stamp_ns - 10'000'000;
+    for (Frame& frame : frames) {
+        frame.stamp_ns = stamp_ns += 200'000;
+    }
+    std::ranges::transform(traffic, std::back_inserter(frames), &Sent::frame);
+    return frames;
+}
+
+bool same(const Frames& one, const Frames& other) {
+    return std::ranges::equal(one, other, [](const Frame& a, const Frame& b) {
+        return a.stamp_ns == b.stamp_ns && a.id == b.id && a.length == b.length && a.data == b.data &&
+               a.extended == b.extended && a.fd == b.fd && a.remote == b.remote;
+    });
+}
+
+/// An arm in motion, and its log.
+struct Run {
+    std::mt19937_64 engine{seed()};
+    BusDescription description;
+    CampaignArm arm;
+    Scene scene;
+    Traffic good;
+
+    explicit Run(const BusDescription& described)
+        : description(described),
+          arm(campaign_arm(described)), scene{Truth(engine), 100'000'000'000, &engine},
+          good(arm.run(scene, 2000)) {}
+
+    /// Frames with a fault in the middle; empty if these devices cannot have it.
+    Frames with(const Fault& fault) {
+        Traffic traffic = good;
+        const std::int64_t begin_ns = scene.cycle_ns(800);
+        const std::int64_t length_ns = std::llround(1e9 * fault.longest_s);
+        FaultSite site{arm, traffic, begin_ns, begin_ns + length_ns, engine, scene.truth};
+        fault.apply(site);
+        const Frames frames = recorded(description, traffic);
+        return same(frames, recorded(description, good)) ? Frames{} : frames;
+    }
+};
+
+/// Returns false for faults of efforts where the sensor measures the outputs, and for faults of single frames
+/// where several messages share each identifier.
+bool matters(const BusDescription& description, const Fault& fault) {
+    const bool of_effort = fault.apply == freeze_effort || fault.apply == saturate_effort;
+    const bool of_frames = fault.apply == delay_frames || fault.apply == duplicate_frames ||
+                           fault.apply == swap_frames || fault.apply == clock_slightly;
+    const BusCheck check(description);
+    std::set<std::string> senders; ///< with an identifier for one message
+    for (const auto& [key, stream] : check.streams()) {
+        if (!stream.several && stream.expected_hz > 0) {
+            senders.insert(stream.sender);
+        }
+    }
+    if (fault.apply == clock_slightly && senders.size() < 2) {
+        return false;
+    }
+    const bool shared = std::ranges::all_of(check.streams(), [](const auto& stream) {
+        return stream.second.several || stream.second.expected_hz == 0;
+    });
+    return !(of_effort && description.sensor) && !(of_frames && shared);
+}
+
+/// The findings of a fault. Draws it again while it is too small to be seen, as one bit of a position may be.
+Names found_in(Run& run, const Fault& fault) {
+    constexpr int draws = 12;
+    Names found;
+    for (int draw = 0; draw < draws && found.empty(); ++draw) {
+        const Frames frames = run.with(fault);
+        found = frames.empty() ? found : rules(run.description, frames);
+    }
+    return found;
+}
+
+void check_legend(const std::vector<BusDescription>& arms) {
+    const std::map<int, Expected> expected = legend();
+    for (const BusDescription& description : arms) {
+        Run run(description);
+        CAPTURE(run.arm.name, description.sensor.has_value());
+        CHECK(rules(description, recorded(description, run.good)) == Names{});
+        for (const Fault& fault : campaign_faults()) {
+            if (run.with(fault).empty() || !matters(description, fault)) {
+                continue; // these devices cannot have it
+            }
+            const Names found = found_in(run, fault);
+            const Expected& names = expected.at(fault.number);
+            CAPTURE(fault.number, fault.name, found);
+            CHECK_FALSE(found.empty());
+            CHECK(std::ranges::all_of(found, [&](const std::string& name) {
+                return std::ranges::find(names, name) != names.end();
+            }));
+        }
+    }
+}
+
+TEST_CASE("buscheck reports each fault of the legend by the legend's findings in each family") {
+    check_legend(example_arms(true));
+}
+
+TEST_CASE("buscheck reports each fault of the legend by the legend's findings with each sensor", "[.long]") {
+    check_legend(example_arms());
+}
+
+} // namespace bus_check_legend_test

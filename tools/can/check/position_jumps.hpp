@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// A step between two positions of one joint that the joint cannot make.
+struct PositionJump {
+    std::int64_t time_ns = 0;
+    double from_rad = 0, to_rad = 0; ///< where the motion before it led, and where the position was
+    double count_rad = 0;            ///< smallest step of the encoder
+    double from_zero_rad = 0;        ///< of the position after it, from the device's own zero
+    bool turn = false;               ///< whole turns of the encoder
+    bool replays = false;            ///< the positions after it are those of an earlier time
+
+    double step_rad() const noexcept { return to_rad - from_rad; }
+};
+
+/// What made a joint's position jump.
+enum class JumpCause : std::uint8_t {
+    bits_flipped,
+    bit_stuck,
+    frames_replayed,
+    zero_lost,
+    nodes_swapped,
+    wrap,
+    unknown
+};
+
+/// Finds out whether the positions after a jump are those of an earlier time, one after the other.
+class ReplayedPositions {
+  public:
+    /// Takes the next position; `jumps`: it is the first after a jump. Returns true once for each jump whose
+    /// positions are old ones.
+    bool take(double position_rad, bool jumps);
+
+  private:
+    static constexpr std::size_t kept = 512;
+
+    double before(std::size_t age) const { return positions_[(count_ - age) % kept]; }
+
+    std::array<double, kept> positions_{};
+    std::size_t count_ = 0;
+    std::vector<std::size_t> ages_; ///< of earlier positions that are equal to those since the jump
+    double first_rad_ = 0;
+    bool moves_ = false;
+    int equal_ = 0;
+};
+
+/// The causes of the jumps of each joint of an arm, one each.
+std::vector<std::vector<JumpCause>> causes_of(std::span<const std::vector<PositionJump>> joints);
+
+} // namespace dfdyn::tools
