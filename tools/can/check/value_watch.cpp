@@ -15,9 +15,6 @@ constexpr std::uint64_t least_equal = 20; ///< consecutive positions
 constexpr double least_equal_s = 0.1;
 constexpr std::uint64_t least_equal_efforts = 100; ///< consecutive efforts
 constexpr double least_equal_efforts_s = 0.5;
-/// A shorter run of equal efforts, if it is many times as long as the longest before.
-constexpr std::uint64_t least_equal_short = 50;
-constexpr std::uint64_t times_the_longest = 4;
 constexpr double least_motion_rad = 0.02;
 constexpr std::size_t most_jumps = 64;
 constexpr double silence_periods = 3;
@@ -196,7 +193,6 @@ void ValueWatch::take_effort(const hal::JointValue& value) {
     ++efforts_;
     saturated_efforts_ += value.effort_reason == hal::Reason::output_saturated ? 1 : 0;
     if (!effort_started_ || value.effort != effort_) {
-        longest_equal_efforts_ = std::max(longest_equal_efforts_, equal_efforts_);
         equal_efforts_ = 0;
         lowest_rad_ = highest_rad_ = position_rad_;
         effort_changed_ns_ = value.stamp_ns;
@@ -206,10 +202,7 @@ void ValueWatch::take_effort(const hal::JointValue& value) {
     ++equal_efforts_;
     const bool long_run = equal_efforts_ >= least_equal_efforts &&
                           seconds_of(value.stamp_ns - effort_changed_ns_) >= least_equal_efforts_s;
-    const bool unusual = longest_equal_efforts_ > 0 && equal_efforts_ >= least_equal_short &&
-                         equal_efforts_ >= times_the_longest * longest_equal_efforts_;
-    if ((long_run || unusual) && highest_rad_ - lowest_rad_ > least_motion_rad &&
-        value.effort_reason == hal::Reason::ok) {
+    if (long_run && highest_rad_ - lowest_rad_ > least_motion_rad && value.effort_reason == hal::Reason::ok) {
         ++frozen_efforts_;
     }
 }

@@ -85,7 +85,6 @@ class ValueWatch {
     bool effort_started_ = false;
     double effort_ = 0;
     std::uint64_t equal_efforts_ = 0;
-    std::uint64_t longest_equal_efforts_ = 0; ///< of the runs before
     double lowest_rad_ = 0, highest_rad_ = 0; ///< range of positions since the last change of the effort
     std::int64_t effort_changed_ns_ = 0;
     std::uint64_t frozen_efforts_ = 0, saturated_efforts_ = 0;

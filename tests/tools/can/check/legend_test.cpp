@@ -142,7 +142,8 @@ struct Run {
     Frames with(const Fault& fault) {
         Traffic traffic = good;
         const std::int64_t begin_ns = scene.cycle_ns(800);
-        const std::int64_t length_ns = std::llround(1e9 * fault.longest_s);
+        const double length_s = fault.apply == freeze_effort ? 1.2 : fault.longest_s; // 0.5 s is reported
+        const std::int64_t length_ns = std::llround(1e9 * length_s);
         FaultSite site{arm, traffic, begin_ns, begin_ns + length_ns, engine, scene.truth};
         fault.apply(site);
         const Frames frames = recorded(description, traffic);
