@@ -151,6 +151,20 @@ struct Run {
     }
 };
 
+/// Returns true if the devices report an effort at the end of its numbers.
+bool reports_saturation(const BusDescription& description) {
+    dfdyn::tools::BusBoard board = description.boards.front();
+    std::array<hal::JointValue, 2> beyond{};
+    beyond[0].effort = beyond[1].effort = 1e6;
+    const hal::FrameList frames = board.board.encode(beyond);
+    bool reports = false;
+    for (int i = 0; i < frames.count; ++i) {
+        const hal::Decoded decoded = board.board.decode(frames.frame[static_cast<std::size_t>(i)]);
+        reports = reports || decoded.joint[0].effort_reason == hal::Reason::output_saturated;
+    }
+    return reports;
+}
+
 /// Returns false for faults of efforts where the sensor measures the outputs, and for faults of single frames
 /// where several messages share each identifier.
 bool matters(const BusDescription& description, const Fault& fault) {
@@ -164,7 +178,8 @@ bool matters(const BusDescription& description, const Fault& fault) {
             senders.insert(stream.sender);
         }
     }
-    if (fault.apply == clock_slightly && senders.size() < 2) {
+    if ((fault.apply == clock_slightly && senders.size() < 2) ||
+        (fault.apply == saturate_effort && !reports_saturation(description))) {
         return false;
     }
     const bool shared = std::ranges::all_of(check.streams(), [](const auto& stream) {
