@@ -10,6 +10,7 @@ class ClosedLoop {
     ClosedLoop()
         : controller_({.position = 80, .velocity = 8, .inertia = 0.2F, .limit = 15, .bandwidth = 30}) {
         controller_.activate(joints_.state());
+        controller_.relearn(); // these joints are not those of the training
     }
 
     void tick() {

@@ -31,6 +31,10 @@ struct Source {
     const BusCheck& check;
 
     double ratio() const { return stream.rate_hz() / stream.expected_hz; }
+    /// The ratio without frames that repeat the one before.
+    double ratio_without_copies() const {
+        return ratio() * (1 - static_cast<double>(stream.copies) / static_cast<double>(stream.count));
+    }
     double periods(double time_s) const { return time_s * stream.expected_hz; }
     double gap_periods() const { return periods(1e-9 * static_cast<double>(stream.longest_gap_ns)); }
     double jitter_periods() const { return periods(stream.jitter_s()); }
@@ -57,8 +61,8 @@ struct Source {
     bool collides() const {
         return !duplicated() &&
                ((has_more() && stream.additional_at_once() > least_at_once) ||
-                (is_described() &&
-                 (ratio() > rate_of_two || (ratio() > largest_rate && jitter_periods() > jitter_of_two))));
+                (is_described() && (ratio() > rate_of_two || (ratio_without_copies() > largest_rate &&
+                                                              jitter_periods() > jitter_of_two))));
     }
     bool jitters() const {
         return keeps_rate() && !stream.several && !collides() && !duplicated() && !loses() && !has_gaps() &&

@@ -107,6 +107,9 @@ class LearnedTorque {
         return known;
     }
 
+    /// See `Estimator::relearn`: for an arm that is another than that of the training, or has changed.
+    void relearn() noexcept { estimator_.relearn(); }
+
     /// Returns to the initial state of the model.
     void reset() noexcept {
         estimator_.reset();
