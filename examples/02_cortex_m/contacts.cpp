@@ -63,7 +63,7 @@ int application() {
     }
     report(DFDYN_CORE ": contacts found ", static_cast<std::uint32_t>(contacts), "");
     report(", at joint ", static_cast<std::uint32_t>(detector.joint() + 1), "");
-    report(", ticks of 8 ms after the push began ", static_cast<std::uint32_t>(found_after), "");
+    report(", ticks of 8 ms after the push began ", static_cast<std::uint32_t>(std::max(found_after, 0)), "");
     report("; instructions of the detector per tick: mean ", sum / static_cast<std::uint32_t>(tick), "");
     report(", most ", largest, "");
     report("; its state ", sizeof(detector), " bytes\n");

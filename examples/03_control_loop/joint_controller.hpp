@@ -98,8 +98,8 @@ class JointController {
     /// Returns the number of ticks since the last new measurement of this joint.
     [[nodiscard]] int ticks_without_sample(int joint) const { return missed_[joint]; }
 
-    /// Tells the learner that the arm is another than that of its training, or has changed. Otherwise it takes
-    /// much of what it measures for pushes, and follows slowly.
+    /// Tells the learner that the arm is another than that of its training, or has changed. Otherwise it
+    /// takes much of what it measures for pushes, and follows slowly.
     void relearn() { learned_.relearn(); }
 
     /// Switches the learned part on and off, without a step.

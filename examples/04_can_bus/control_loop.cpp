@@ -172,7 +172,7 @@ extern "C" void systick_handler() {
     }
     static_cast<void>(systick().control); // clears the flag that the timer passed zero
     mailbox.advance();
-    assembly.drain(mailbox, room, [](const Assembly::SampleTrigger& moment) { learn(moment.instant_ns); });
+    assembly.drain(mailbox, room, [](const dfdyn::hal::SampleTrigger& moment) { learn(moment.instant_ns); });
     end_of_interrupt();
 }
 

@@ -16,7 +16,7 @@
 namespace dfdyn::tools {
 
 struct BenchOptions {
-    std::vector<int> columns = contender_columns();
+    std::vector<int> columns = learner_columns();
     int largest_peer = 1000; ///< larger sizes are measured without peers
     RepetitionOptions repetitions;
     int dense_ticks = 5;                  ///< of SPK's dense form, which takes long per tick

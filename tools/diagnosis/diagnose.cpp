@@ -90,7 +90,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     FitOptions how{work.gains_known, 1, options.progress, options.effects};
     work.fitted_effects = find_effects(*signals, work.measured, how);
     work.rest = work.measured - signals->nominal - work.fitted_effects.all(*signals);
-    work.pushes = standing_contacts(*signals, work.fitted_effects, work.measured, work.rest);
+    work.pushes = stationary_contacts(*signals, work.fitted_effects, work.measured, work.rest);
     for (const StationaryContact& push : work.pushes) {
         work.rest.col(static_cast<Eigen::Index>(push.joint)) -= push.share;
     }

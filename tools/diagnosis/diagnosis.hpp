@@ -129,7 +129,7 @@ struct DiagnosisWork {
     FittedEffects fitted_effects;
     std::vector<StationaryContact> pushes; ///< at stationary joints
     RawSamples samples;                    ///< of the recording; without rows: errors are those of `measured`
-    Eigen::MatrixXd rest; ///< T x m: residual after the explanation and the contacts, as `measured`
+    Eigen::MatrixXd rest; ///< T x m: residual after the fitted effects and the contacts, as `measured`
     Diagnosis diagnosis;
     /// T x m: outputs of the extended model of the whole recording, as `measured`; plain least squares beside
     /// the body of the robot's file where that is better

@@ -23,7 +23,7 @@ constexpr double block_s = 0.1;
 constexpr double motion_window_s = 0.12;
 constexpr double report_s = 2;
 constexpr double longest_s = 20;
-constexpr double renewal_s = 3;
+constexpr double refresh_s = 3;
 constexpr float sign_velocity = 0.02F;             // rad/s
 constexpr SpeedClasses<float> speed{0.03F, 0.15F}; // rad/s
 
@@ -64,7 +64,7 @@ typename HostMonitor<Arm>::Constants monitor_constants(const MonitorSetup& setup
     constants.blocks_between_false_alarms = static_cast<float>(3600 * setup.false_alarm_hours * blocks_per_s);
     constants.report_blocks = static_cast<int>(std::lround(report_s * blocks_per_s));
     constants.longest_blocks = static_cast<int>(std::lround(longest_s * blocks_per_s));
-    constants.refresh_blocks = static_cast<int>(std::lround(renewal_s * blocks_per_s));
+    constants.refresh_blocks = static_cast<int>(std::lround(refresh_s * blocks_per_s));
     return constants;
 }
 

@@ -41,7 +41,7 @@ void print(std::ostream& out, const char* what, const hal::UnexpectedFrames& off
     if (offenders.count() == 0) {
         return;
     }
-    const hal::UnexpectedFrames::Offender& first = offenders.first();
+    const hal::UnexpectedFrames::Entry& first = offenders.first();
     out << "  " << offenders.count() << " x " << what << ": first " << identifier_text(first.id) << " with "
         << static_cast<int>(first.length) << " bytes";
     if (first.reason != hal::Reason::ok) {

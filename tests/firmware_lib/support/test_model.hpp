@@ -90,8 +90,6 @@ typename Model::Sample moving_sample(std::int64_t tick, std::mt19937_64& engine)
     return sample_of<Model>(moving_arm(period_s * static_cast<double>(tick)), tick, engine);
 }
 
-/// Sets the constants of an input such that its elements are (q, q̇, q̈) of each joint times `sizes`; other
-/// elements stay unchanged.
 /// Sets the rows of an input with three of them to the filters of DFSR.
 template <class Input, class Constants>
 void set_filters(Constants& input, const StructuredFilters<double>& filters) {
@@ -103,6 +101,8 @@ void set_filters(Constants& input, const StructuredFilters<double>& filters) {
     });
 }
 
+/// Sets the constants of an input such that its elements are (q, q̇, q̈) of each joint times `sizes`; other
+/// elements stay unchanged.
 template <class Input, class Constants>
 void set_input(Constants& input, const std::array<double, 3>& sizes) {
     constexpr double beta = 0.05; // so small that the tail vanishes after six lags

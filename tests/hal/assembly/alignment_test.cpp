@@ -158,7 +158,7 @@ TEST_CASE("an arm whose joints measure their currents has one output per joint")
         value[0].effort = current_A;
         return arm.take(at_time(boards[board].encode(value).frame[0], stamp), stamp);
     };
-    using Kind = CurrentArm::SampleTrigger::Kind;
+    using Kind = dfdyn::hal::SampleTrigger::Kind;
     CHECK(send(0, 0.5, 2, ms).kind == Kind::none);
     const auto set = send(1, -0.5, -3, ms + 100 * us);
     CHECK(set.kind == Kind::set);

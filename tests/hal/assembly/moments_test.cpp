@@ -9,7 +9,7 @@ using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 
 using Arm = SampleAssembly<double, 2, Cia402Drive, 2, EffortOutput<2, 8>>;
-using Kind = Arm::SampleTrigger::Kind;
+using Kind = dfdyn::hal::SampleTrigger::Kind;
 
 std::array<Cia402Drive, 2> two_drives() {
     Cia402Drive::Config first{.node = 1, .joint = 0, .effort_pdo = 0x380, .effort_length = 2};
@@ -36,7 +36,8 @@ TEST_CASE("at a SYNC the values measured at the one before are complete, and exa
     const std::array<Cia402Drive, 2> drives = two_drives();
     for (int cycle = 0; cycle < 20; ++cycle) {
         const std::int64_t sync_ns = cycle * 10 * ms;
-        const Arm::SampleTrigger moment = arm.take(at_time(Cia402Drive::encode_sync(), sync_ns), sync_ns);
+        const dfdyn::hal::SampleTrigger moment =
+            arm.take(at_time(Cia402Drive::encode_sync(), sync_ns), sync_ns);
         if (cycle == 0) {
             CHECK(moment.kind == Kind::none);
         } else {
@@ -67,28 +68,28 @@ TEST_CASE("at a SYNC the values measured at the one before are complete, and exa
 }
 
 TEST_CASE("after an incomplete set was dropped the next one begins with the next frame") {
-    MomentWatch<2> moments{{}};
+    SampleTriggerWatch<2> moments{{}};
     CHECK_FALSE(moments.drop_set(0));
     moments.measured(0);
-    CHECK(moments.completed(5).kind == SampleMoment::Kind::none); // joint 2 is lost
+    CHECK(moments.completed(5).kind == SampleTrigger::Kind::none); // joint 2 is lost
     CHECK(moments.drop_set(5));
     CHECK_FALSE(moments.drop_set(5));
     moments.measured(0);
     moments.measured(1);
-    CHECK(moments.completed(5).kind == SampleMoment::Kind::none); // the output belongs to the dropped set
-    const SampleMoment moment = moments.completed(6);
-    CHECK(moment.kind == SampleMoment::Kind::set);
+    CHECK(moments.completed(5).kind == SampleTrigger::Kind::none); // the output belongs to the dropped set
+    const SampleTrigger moment = moments.completed(6);
+    CHECK(moment.kind == SampleTrigger::Kind::set);
     CHECK(moment.instant_ns == 6);
 }
 
 TEST_CASE("an output that is known only after its set was dropped does not complete the next set") {
-    MomentWatch<1> moments{{}};
+    SampleTriggerWatch<1> moments{{}};
     moments.measured(0);
-    CHECK(moments.completed(10).kind == SampleMoment::Kind::set);
+    CHECK(moments.completed(10).kind == SampleTrigger::Kind::set);
     moments.measured(0);
     CHECK(moments.drop_set(21));
     moments.measured(0);
-    CHECK(moments.completed(20).kind == SampleMoment::Kind::none); // half of it was lost
+    CHECK(moments.completed(20).kind == SampleTrigger::Kind::none); // half of it was lost
     CHECK(moments.completed(30).instant_ns == 30);
 }
 
@@ -126,9 +127,9 @@ TEST_CASE("a set is complete when all joints and the wrench are new, at the wren
             arm.bus.waiting.push_back(frame);
         }
         arm.bus.now = ArmOnBus::time_ns(arm.number) + 400 * us;
-        arm.assembly.drain(arm.bus, buffer, [&](const ArmOnBus::Assembly::SampleTrigger& moment) {
+        arm.assembly.drain(arm.bus, buffer, [&](const dfdyn::hal::SampleTrigger& moment) {
             ++sets;
-            CHECK(moment.kind == ArmOnBus::Assembly::SampleTrigger::Kind::set);
+            CHECK(moment.kind == dfdyn::hal::SampleTrigger::Kind::set);
             CHECK(moment.instant_ns == ArmOnBus::time_ns(arm.number) + 200 * us);
             const auto assembled = arm.assembly.assemble(moment.instant_ns, arm.bus.now);
             CHECK(assembled.valid());

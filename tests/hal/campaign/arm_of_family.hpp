@@ -74,8 +74,8 @@ class ReceivingAssembly : public ReceivingArm {
     ReceivingAssembly(Trigger trigger, const Assembly& assembly) : trigger_(trigger), assembly_(assembly) {}
 
     std::optional<std::int64_t> take(const hal::Frame& frame, std::int64_t now_ns) override {
-        using Kind = hal::SampleMoment::Kind;
-        const hal::SampleMoment moment = assembly_.take(frame, now_ns);
+        using Kind = hal::SampleTrigger::Kind;
+        const hal::SampleTrigger moment = assembly_.take(frame, now_ns);
         const Kind wanted = trigger_ == Trigger::sync ? Kind::sync : Kind::set;
         return trigger_ != Trigger::timer && moment.kind == wanted ? std::optional(moment.instant_ns)
                                                                    : std::nullopt;

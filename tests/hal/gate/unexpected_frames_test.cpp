@@ -4,7 +4,7 @@
 #include "tests/hal/support/frames.hpp"
 #include "tests/support/catch.hpp"
 
-namespace offenders_test {
+namespace unexpected_frames_test {
 
 using namespace dfdyn::hal;
 
@@ -25,4 +25,4 @@ TEST_CASE("the first offender is kept, the others are counted") {
     CHECK(offenders.first().reason == Reason::wrong_length);
 }
 
-} // namespace offenders_test
+} // namespace unexpected_frames_test

@@ -225,9 +225,9 @@ TEST_CASE("currents with unknown torque constants in several recordings are diag
     REQUIRE(diagnosis["granted"].size() >= 2);
     const std::array constants{5.0, 3.0}; // of the scenario
     std::size_t joint = 0;
-    for (const json& nuisance_estimates : diagnosis["granted"]) {
-        if (nuisance_estimates["name"] == "torque_constant") {
-            CHECK(double(nuisance_estimates["value"]) == Approx(constants.at(joint++)).epsilon(0.1));
+    for (const json& estimate : diagnosis["granted"]) {
+        if (estimate["name"] == "torque_constant") {
+            CHECK(double(estimate["value"]) == Approx(constants.at(joint++)).epsilon(0.1));
         }
     }
     CHECK(joint == 2);

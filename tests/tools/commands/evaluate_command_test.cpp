@@ -26,7 +26,7 @@ Outcome evaluate(const TemporaryDirectory& directory, const std::string& options
 }
 
 /// Number of unit files, each of which must be complete.
-std::size_t count_unit_files(const TemporaryDirectory& directory) {
+std::size_t count_job_files(const TemporaryDirectory& directory) {
     std::size_t count = 0;
     if (!std::filesystem::exists(directory.path() / "out/cases")) {
         return count;
@@ -95,7 +95,7 @@ TEST_CASE("an interrupted run leaves complete files and continues from them") {
            << "until [ -e " << in << "/out/cases/NP-ML-STD/5.json ]; do sleep 0.001; done; kill -" << signal
            << " $!; wait $!";
     CHECK(std::system(script.str().c_str()) != 0);
-    const std::size_t done = count_unit_files(directory);
+    const std::size_t done = count_job_files(directory);
     CAPTURE(signal, done);
     CHECK(done > 0);
     CHECK(done < 120);
@@ -103,7 +103,7 @@ TEST_CASE("an interrupted run leaves complete files and continues from them") {
     CHECK(again.status == 0);
     CHECK_THAT(again.out,
                ContainsSubstring("120 of 120 cases x draws done (" + std::to_string(done) + " found"));
-    CHECK(count_unit_files(directory) == 120);
+    CHECK(count_job_files(directory) == 120);
 }
 
 } // namespace evaluate_command_test

@@ -11,8 +11,8 @@
 namespace common_ticks_test {
 
 using namespace dfdyn::tools;
+using dfdyn::tests::job_at;
 using dfdyn::tests::two_case_plan;
-using dfdyn::tests::unit_at;
 
 constexpr std::size_t rows = 60;
 constexpr std::size_t horizon = 5;
@@ -83,7 +83,7 @@ TEST_CASE("ticks without a relative error because an output is zero are not scor
 
 TEST_CASE("errors of other ticks are dropped and missing errors of common ticks are infinite") {
     DFDYN_SEEDED_ENGINE(engine);
-    std::vector<JobResult> jobs{unit_at("A", 1, 1, engine), unit_at("B", 1, 1, engine)};
+    std::vector<JobResult> jobs{job_at("A", 1, 1, engine), job_at("B", 1, 1, engine)};
     jobs[0].error[1][2][6] = 0.5;
     jobs[0].error[1][2][9] = std::nan("");
     jobs[1].error[0][1][8] = infinite;

@@ -11,15 +11,15 @@
 namespace comparison_test {
 
 using namespace dfdyn::tools;
+using dfdyn::tests::job_at;
 using dfdyn::tests::two_case_plan;
-using dfdyn::tests::unit_at;
 
 /// Units in which the errors of A are `ratio` times those of B in each draw.
 std::vector<JobResult> units_with(double ratio, std::size_t draws, std::mt19937_64& engine) {
     std::vector<JobResult> jobs;
     for (std::size_t seed = 1; seed <= draws; ++seed) {
-        jobs.push_back(unit_at("A", seed, ratio * static_cast<double>(seed), engine));
-        jobs.push_back(unit_at("B", seed, static_cast<double>(seed), engine));
+        jobs.push_back(job_at("A", seed, ratio * static_cast<double>(seed), engine));
+        jobs.push_back(job_at("B", seed, static_cast<double>(seed), engine));
     }
     return jobs;
 }
@@ -145,8 +145,8 @@ TEST_CASE("the spread of a comparison is the quartiles of its ratio over the dra
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<JobResult> jobs;
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        jobs.push_back(unit_at("A", seed, 0.1 * static_cast<double>(seed), engine));
-        jobs.push_back(unit_at("B", seed, 1, engine));
+        jobs.push_back(job_at("A", seed, 0.1 * static_cast<double>(seed), engine));
+        jobs.push_back(job_at("B", seed, 1, engine));
     }
     const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(5), jobs);
     CHECK(outcome.lower_ratio == Approx(0.2).epsilon(0.1));

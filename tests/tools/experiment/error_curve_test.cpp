@@ -14,7 +14,7 @@
 namespace error_curve_test {
 
 using namespace dfdyn::tools;
-using dfdyn::tests::unit_at;
+using dfdyn::tests::job_at;
 
 const double infinite = std::numeric_limits<double>::infinity();
 
@@ -22,7 +22,7 @@ const double infinite = std::numeric_limits<double>::infinity();
 std::vector<JobResult> draws_with_gaps(std::mt19937_64& engine) {
     std::vector<JobResult> draws;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        draws.push_back(unit_at("A", seed, 1, engine));
+        draws.push_back(job_at("A", seed, 1, engine));
         for (std::vector<double>& subset : draws.back().error[1]) {
             subset[0] = subset[1] = std::nan("");
         }

@@ -15,10 +15,10 @@ namespace evaluation_page_test {
 using namespace dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
+using dfdyn::tests::job_at;
 using dfdyn::tests::markup_fault;
 using dfdyn::tests::TemporaryDirectory;
 using dfdyn::tests::two_case_plan;
-using dfdyn::tests::unit_at;
 
 struct Evaluation {
     Plan plan = two_case_plan(6);
@@ -33,8 +33,8 @@ Evaluation evaluation() {
     one.data.start.output.names = {"fx", "mx"};
     one.data.subsets.resize(3);
     for (const std::uint64_t seed : one.plan.seeds) {
-        one.results.jobs.push_back(unit_at("A", seed, 0.5, engine));
-        one.results.jobs.push_back(unit_at("B", seed, 1, engine));
+        one.results.jobs.push_back(job_at("A", seed, 0.5, engine));
+        one.results.jobs.push_back(job_at("B", seed, 1, engine));
     }
     one.plan.findings = {
         {"A wins", "A errs less.", "Because of that.", {{"A", "B", "force", Phase::steady, 0}}},
@@ -143,7 +143,7 @@ TEST_CASE("the tables show the spread over the draws") {
     one.plan.seeds = {1, 2, 3};
     one.data.start.output.names = {"fx", "mx"};
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
-        one.results.jobs.push_back(unit_at("A", seed, 1, engine));
+        one.results.jobs.push_back(job_at("A", seed, 1, engine));
         for (auto& group : one.results.jobs.back().error) {
             for (std::vector<double>& subset : group) {
                 std::ranges::fill(subset, static_cast<double>(seed));

@@ -42,7 +42,7 @@ CaseMemories empty_memories(const Plan& plan) {
 json without_times(const EvaluationResults& results) {
     json all = json::array();
     for (const JobResult& job : results.jobs) {
-        all.push_back(json(unit_to_json(job)));
+        all.push_back(json(job_to_json(job)));
         all.back().erase("median_us");
     }
     return all;

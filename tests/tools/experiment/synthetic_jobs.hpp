@@ -27,8 +27,8 @@ inline tools::Plan two_case_plan(std::size_t draws) {
 }
 
 /// A job with random errors about `level`, every 0.1 s, in three subsets of 60 ticks.
-inline tools::JobResult unit_at(const std::string& name, std::uint64_t seed, double level,
-                                std::mt19937_64& engine) {
+inline tools::JobResult job_at(const std::string& name, std::uint64_t seed, double level,
+                               std::mt19937_64& engine) {
     std::lognormal_distribution<double> spread(0, 0.1);
     tools::JobResult job{name, seed, 0.1, {}, {0.1 * level, 0.2 * level}, 3.5, 1000, 4000, 20};
     job.error.resize(2);

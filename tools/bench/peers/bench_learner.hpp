@@ -44,7 +44,7 @@ BenchLearners peers(const RegressionTask& task);
 std::vector<std::string> missing_peers();
 
 /// Returns the sizes of `dfdyn_learners`.
-const std::vector<int>& contender_columns();
+const std::vector<int>& learner_columns();
 
 /// A library whose learners are compared with ours. To add one: a file with this object, and a line in
 /// peers.cpp.

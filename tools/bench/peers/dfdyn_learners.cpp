@@ -11,11 +11,11 @@ namespace dfdyn::tools {
 namespace {
 
 template <class Scalar, int p>
-class OurContender final : public TypedLearner<Scalar> {
+class DfdynLearner final : public TypedLearner<Scalar> {
     using Base = TypedLearner<Scalar>;
 
   public:
-    explicit OurContender(const RegressionTask& task)
+    explicit DfdynLearner(const RegressionTask& task)
         : Base("dfdyn", BenchLearner::Kind::ours, task),
           learner_(std::make_unique<Learner>(constants, Extent<p>{}, Extent<RegressionTask::outputs>{})) {}
 
@@ -36,13 +36,13 @@ class OurContender final : public TypedLearner<Scalar> {
 template <int p, class... Scalar>
 BenchLearners of_size(const RegressionTask& task) {
     BenchLearners all;
-    (all.push_back(std::make_unique<OurContender<Scalar, p>>(task)), ...);
+    (all.push_back(std::make_unique<DfdynLearner<Scalar, p>>(task)), ...);
     return all;
 }
 
 } // namespace
 
-const std::vector<int>& contender_columns() {
+const std::vector<int>& learner_columns() {
     static const std::vector<int> sizes{100, 200, 500, 1000, 2000};
     return sizes;
 }

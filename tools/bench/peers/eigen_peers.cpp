@@ -9,8 +9,8 @@ namespace {
 
 /// Textbook recursive least squares with the covariance matrix, of which one triangle is stored.
 template <class Scalar>
-class EigenCovariance final : public EigenContender<Scalar> {
-    using Base = EigenContender<Scalar>;
+class EigenCovariance final : public EigenLearner<Scalar> {
+    using Base = EigenLearner<Scalar>;
 
   public:
     explicit EigenCovariance(const RegressionTask& task)
@@ -36,8 +36,8 @@ class EigenCovariance final : public EigenContender<Scalar> {
 /// The paper's method with Eigen: a rank-one update of the Cholesky factor of the information matrix, then
 /// two triangular solves for the weights. It computes no variance, which would need another solve.
 template <class Scalar>
-class EigenCholesky final : public EigenContender<Scalar> {
-    using Base = EigenContender<Scalar>;
+class EigenCholesky final : public EigenLearner<Scalar> {
+    using Base = EigenLearner<Scalar>;
 
   public:
     explicit EigenCholesky(const RegressionTask& task)

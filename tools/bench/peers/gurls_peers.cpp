@@ -18,10 +18,10 @@ namespace {
 /// makes the same BLAS calls in the same memory order as GURLS, and the same copies of the factor, which goes
 /// through a second buffer. The remaining work of GURLS per sample (its list of options, copies of weights
 /// and right-hand sides) is left out, so that this is a lower bound of its time.
-class RecursiveCholesky final : public EigenContender<double> {
+class RecursiveCholesky final : public EigenLearner<double> {
   public:
     explicit RecursiveCholesky(const RegressionTask& task)
-        : EigenContender("GURLS' Cholesky update, stand-in", Kind::gurls, task),
+        : EigenLearner("GURLS' Cholesky update, stand-in", Kind::gurls, task),
           factor_(Matrix::Identity(columns(), columns()) / std::sqrt(RegressionTask::prior_variance)),
           right_(weights_), row_(columns()) {}
 

@@ -31,8 +31,8 @@ void solve(const int& n, const int& count, const double* r, double* b) {
 }
 
 template <class Scalar>
-class Qrupdate final : public EigenContender<Scalar> {
-    using Base = EigenContender<Scalar>;
+class Qrupdate final : public EigenLearner<Scalar> {
+    using Base = EigenLearner<Scalar>;
 
   public:
     explicit Qrupdate(const RegressionTask& task)

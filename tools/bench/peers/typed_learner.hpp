@@ -52,14 +52,14 @@ class TypedLearner : public BenchLearner {
 
 /// A learner whose weights, initially zero, are in an Eigen matrix with one column per output.
 template <class Scalar>
-class EigenContender : public TypedLearner<Scalar> {
+class EigenLearner : public TypedLearner<Scalar> {
   public:
     using typename TypedLearner<Scalar>::Matrix;
     using typename TypedLearner<Scalar>::Vector;
     using typename TypedLearner<Scalar>::Outputs;
     using Row = Eigen::Map<const Vector>;
 
-    EigenContender(std::string name, BenchLearner::Kind kind, const RegressionTask& task)
+    EigenLearner(std::string name, BenchLearner::Kind kind, const RegressionTask& task)
         : TypedLearner<Scalar>(std::move(name), kind, task),
           weights_(Matrix::Zero(task.columns(), RegressionTask::outputs)) {}
 

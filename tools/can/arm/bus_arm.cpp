@@ -120,8 +120,8 @@ BusArm::Assembly::Config BusArm::config_of(const BusDescription& description) {
 }
 
 std::optional<std::int64_t> BusArm::take(const hal::Frame& frame, std::int64_t now_ns) {
-    using Kind = hal::SampleMoment::Kind;
-    const hal::SampleMoment moment = assembly_.take(frame, now_ns);
+    using Kind = hal::SampleTrigger::Kind;
+    const hal::SampleTrigger moment = assembly_.take(frame, now_ns);
     const bool sync = moment.kind == Kind::sync && trigger_ == BusTrigger::sync;
     const bool set = moment.kind == Kind::set && trigger_ == BusTrigger::set;
     return sync || set ? std::optional(moment.instant_ns) : std::nullopt;

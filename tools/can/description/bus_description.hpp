@@ -68,7 +68,7 @@ struct BusDescription {
     BusSource output;
     std::vector<hal::Range> output_range; ///< one per output
     hal::PairGate::Config pairing{};      ///< pairing of the two frames of a wrench
-    int frozen_after = 0;                 ///< number of identical wrenches, see hal::StuckGate
+    int frozen_after = 0;                 ///< number of identical wrenches, see hal::FrozenWrenchGate
 
     [[nodiscard]] double data_rate_ratio() const { return data_bit_rate / bit_rate; }
     [[nodiscard]] std::int64_t sample_period_ns() const { return std::llround(1e9 / sample_rate_hz); }

@@ -14,7 +14,7 @@ namespace dfdyn::tools {
 class EffectRegression;
 class SpectralRows;
 struct ChosenEffect;
-struct ExplainingVariable;
+struct PlotAbscissa;
 struct ModelExtension;
 struct PlottedFinding;
 
@@ -110,7 +110,7 @@ struct Effect {
     std::unique_ptr<EffectScan> (*scan)(const DiagnosisSignals& signals, const SpectralRows& rows) = nullptr;
 
     /// Returns the variable over which a finding is plotted. Null: the finding's own contribution.
-    ExplainingVariable (*plotted_over)(const PlottedFinding& finding) = nullptr;
+    PlotAbscissa (*plotted_over)(const PlottedFinding& finding) = nullptr;
     /// Adds the effect to the extended model. Null: it is left out.
     EffectDisposition (*extend)(ModelExtension& extension, const ChosenEffect& chosen) = nullptr;
 };

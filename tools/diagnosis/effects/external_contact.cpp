@@ -5,7 +5,7 @@
 #include "tools/diagnosis/candidates/event_products.hpp"
 #include "tools/diagnosis/candidates/scans.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/output/explaining_variable.hpp"
+#include "tools/diagnosis/output/plot_abscissa.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
@@ -133,8 +133,8 @@ class ContactScan : public EffectScan {
 };
 
 /// Time, limited to the contact and the time before and after it.
-ExplainingVariable around_contact(const PlottedFinding& at) {
-    ExplainingVariable variable = over_time(at);
+PlotAbscissa around_contact(const PlottedFinding& at) {
+    PlotAbscissa variable = over_time(at);
     const Eigen::VectorXd& time = variable.value;
     const double start = at.parameter(contact_start.name);
     const double end = at.parameter(contact_end.name);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/candidates/wrench_axes.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/output/explaining_variable.hpp"
+#include "tools/diagnosis/output/plot_abscissa.hpp"
 
 namespace dfdyn::tools {
 

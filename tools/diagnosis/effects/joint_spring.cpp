@@ -2,7 +2,7 @@
 #include "tools/diagnosis/candidates/sliding.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/extension/extension_parts.hpp"
-#include "tools/diagnosis/output/explaining_variable.hpp"
+#include "tools/diagnosis/output/plot_abscissa.hpp"
 
 namespace dfdyn::tools {
 

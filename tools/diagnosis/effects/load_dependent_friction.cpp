@@ -2,7 +2,7 @@
 #include "tools/base/numerics/root_mean_square.hpp"
 #include "tools/diagnosis/candidates/sliding.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/output/explaining_variable.hpp"
+#include "tools/diagnosis/output/plot_abscissa.hpp"
 
 #include <algorithm>
 
@@ -33,7 +33,7 @@ std::vector<Candidate> load_friction_candidates(const DiagnosisSignals& signals,
 }
 
 /// Plots over the load, signed by the direction of motion.
-ExplainingVariable over_driven_load(const PlottedFinding& at) {
+PlotAbscissa over_driven_load(const PlottedFinding& at) {
     const Eigen::ArrayXd velocity = at.signals.measured.motion.velocity.col(at.joint());
     const Eigen::ArrayXd load = at.signals.joint_torque.col(at.joint());
     return at.whole(at.named("|torque| with the sign of the velocity", "N·m"),

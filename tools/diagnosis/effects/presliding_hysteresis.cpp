@@ -2,7 +2,7 @@
 #include "tools/diagnosis/candidates/sliding.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/extension/extension_parts.hpp"
-#include "tools/diagnosis/output/explaining_variable.hpp"
+#include "tools/diagnosis/output/plot_abscissa.hpp"
 
 #include <algorithm>
 
@@ -32,7 +32,7 @@ std::vector<Candidate> presliding_candidates(const DiagnosisSignals& signals, st
 }
 
 /// Plots over the travel since the last reversal, signed by the direction of motion.
-ExplainingVariable over_travel(const PlottedFinding& at) {
+PlotAbscissa over_travel(const PlottedFinding& at) {
     const Eigen::VectorXd position = at.signals.measured.motion.position.col(at.joint());
     Eigen::VectorXd travel = Eigen::VectorXd::Zero(position.size());
     for (const Stretch& stretch : at.signals.measured.stretches) {

@@ -3,9 +3,9 @@
 
 #include "tools/base/numerics/to_vector.hpp"
 #include "tools/base/text/instant.hpp"
-#include "tools/diagnosis/output/explaining_variable.hpp"
 #include "tools/diagnosis/output/finding_words.hpp"
 #include "tools/diagnosis/output/over_time.hpp"
+#include "tools/diagnosis/output/plot_abscissa.hpp"
 #include "tools/report/xy_chart.hpp"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::vector<double> thinned(const Eigen::VectorXd& values, Eigen::Index most) {
 
 /// Returns the effect as a curve over its abscissa: over time with the gaps of the recording, otherwise means
 /// of its contribution in fine bins.
-XyLine fitted_curve(const ExplainingVariable& over, const MeasuredMotion& measured, const Finding& finding) {
+XyLine fitted_curve(const PlotAbscissa& over, const MeasuredMotion& measured, const Finding& finding) {
     const std::string name = "named effect";
     if (over.time) {
         std::vector<Eigen::Index> rows;
@@ -54,7 +54,7 @@ XyLine fitted_curve(const ExplainingVariable& over, const MeasuredMotion& measur
 }
 
 PageChart evidence_chart(const DiagnosisWork& work, const Finding& finding, std::size_t number) {
-    const ExplainingVariable over = explaining_variable(*work.signals, finding, finding.share);
+    const PlotAbscissa over = plot_abscissa(*work.signals, finding, finding.share);
     const Eigen::VectorXd x = over.value.segment(over.first, over.count);
     const Eigen::VectorXd share = finding.share.segment(over.first, over.count);
     const Eigen::VectorXd error = share + finding.rest.segment(over.first, over.count);

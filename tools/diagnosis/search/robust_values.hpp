@@ -5,7 +5,7 @@
 
 namespace dfdyn::tools {
 
-/// Sets `values` of a settled explanation, and removes effects that only wrong weights support.
+/// Sets `values` of pruned effects, and removes effects that only wrong weights support.
 ///
 /// The noise's spectrum gives the best weights where the effects are exactly right. Where they are not, the
 /// frequencies with the least noise decide, and these are not those with most of the torque: dry friction,

@@ -114,7 +114,7 @@ struct StandPulse : EventWindow {
     std::size_t length = 0; ///< index of the pulse length
     Eigen::Index first = 0; ///< row
     double height = 0;      ///< N·m, the smaller one of both residuals
-    double rest = 0;        ///< N·m, in the residual of the explanation
+    double rest = 0;        ///< N·m, in the residual after the fitted effects
 };
 
 /// Robust standard deviation of the pulses of one length, from the median of their magnitudes.
@@ -131,7 +131,7 @@ double usual_height(const std::vector<StandPulse>& pulses, std::size_t length) {
 /// Searches for contacts at one joint during its standstills.
 class JointStands {
   public:
-    /// `missed`: residual of the rigid body; `rest`: residual of the explanation.
+    /// `missed`: residual of the rigid body; `rest`: residual after the fitted effects.
     JointStands(const DiagnosisSignals& signals, Eigen::Index joint, Eigen::VectorXd missed,
                 Eigen::VectorXd rest)
         : signals_(signals), joint_(joint), missed_(std::move(missed)), rest_(std::move(rest)) {
@@ -223,10 +223,10 @@ double StationaryContact::probability() const {
     return std::erfc((held - std::abs(change)) / (deviation() * std::numbers::sqrt2)) / 2;
 }
 
-std::vector<StationaryContact> standing_contacts(const DiagnosisSignals& signals,
-                                                 const FittedEffects& fitted_effects,
-                                                 const Eigen::MatrixXd& measured,
-                                                 const Eigen::MatrixXd& rest) {
+std::vector<StationaryContact> stationary_contacts(const DiagnosisSignals& signals,
+                                                   const FittedEffects& fitted_effects,
+                                                   const Eigen::MatrixXd& measured,
+                                                   const Eigen::MatrixXd& rest) {
     std::vector<StationaryContact> result;
     for (Eigen::Index joint = 0; !signals.wrench() && joint < signals.outputs(); ++joint) {
         const JointStands stands(signals, joint, measured.col(joint) - signals.nominal.col(joint),

@@ -32,7 +32,7 @@ struct StationaryContact {
 /// undetermined there. It is bounded, however: without a contact, the torque of a stationary joint changes by
 /// at most twice its dry friction, in addition to the influence of the moving links. The function returns the
 /// pulses that exceed this bound, both in the residual of the rigid body for `measured` (T x m) and in the
-/// residual of the explanation, `rest` (T x m). A cause identified during motion may be wrong during
+/// residual after the fitted effects, `rest` (T x m). A cause identified during motion may be wrong during
 /// standstill.
 ///
 /// Limits:
@@ -42,9 +42,9 @@ struct StationaryContact {
 /// - A wrench has no result.
 ///
 /// Cost: 8 T products per pulse length, and a fit of each shape of each cause at a joint.
-std::vector<StationaryContact> standing_contacts(const DiagnosisSignals& signals,
-                                                 const FittedEffects& fitted_effects,
-                                                 const Eigen::MatrixXd& measured,
-                                                 const Eigen::MatrixXd& rest);
+std::vector<StationaryContact> stationary_contacts(const DiagnosisSignals& signals,
+                                                   const FittedEffects& fitted_effects,
+                                                   const Eigen::MatrixXd& measured,
+                                                   const Eigen::MatrixXd& rest);
 
 } // namespace dfdyn::tools

@@ -6,7 +6,7 @@
 namespace dfdyn::tools {
 
 /// Measures the errors of the samples from row `first` on (less than the number of rows): without and with
-/// the effects of an explanation, and of plain least squares, fitted before that row (0: on all rows). Sets
+/// the fitted effects, and of plain least squares, fitted before that row (0: on all rows). Sets
 /// `nominal`, `extended`, `least_squares`, `by_least_squares` and `standing_share` of the diagnosis. Where
 /// the effects err 3 % more than plain least squares, `extended` has its errors.
 void measure_from(DiagnosisWork& work, Eigen::Index first, const FittedEffects& fitted_effects);

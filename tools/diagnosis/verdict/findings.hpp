@@ -5,7 +5,7 @@
 
 namespace dfdyn::tools {
 
-/// Returns the chosen effects of an explanation and the contacts during standstill as findings, in descending
+/// Returns the chosen effects and the contacts during standstill as findings, in descending
 /// order of gain, with parameters, intervals, confidence and alternatives. `rest` (T x m): residual after all
 /// of them.
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,

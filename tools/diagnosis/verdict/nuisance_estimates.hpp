@@ -5,9 +5,9 @@
 
 namespace dfdyn::tools {
 
-/// Returns the estimated nuisance parameters of an explanation: every joint's torque constant if it was not
+/// Returns the estimated nuisance parameters of a fit: every joint's torque constant if it was not
 /// given, and every link's mass if masses are uncertain. `torque_gains`: A per N·m with which the
-/// explanation's torques were computed.
+/// fit's torques were computed.
 std::vector<NuisanceEstimate> estimate_nuisances(const DiagnosisSignals& signals,
                                                  const FittedEffects& fitted_effects,
                                                  const Eigen::VectorXd& torque_gains);

@@ -90,7 +90,7 @@ ordered_json job_inputs(const Plan& plan, const PlanData& data, const Case& one,
 
 JobResult write_job(const std::filesystem::path& path, const ordered_json& inputs, const JobResult& result) {
     make_folder(path.parent_path());
-    const ordered_json json{{"schema", unit_schema}, {"inputs", inputs}, {"result", unit_to_json(result)}};
+    const ordered_json json{{"schema", unit_schema}, {"inputs", inputs}, {"result", job_to_json(result)}};
     write_file(path, json.dump() + "\n");
     return unit_from_json(json.at("result"));
 }

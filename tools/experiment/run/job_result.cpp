@@ -54,7 +54,7 @@ std::vector<double> numbers_from_json(const ordered_json& json) {
 
 } // namespace
 
-ordered_json unit_to_json(const JobResult& result) {
+ordered_json job_to_json(const JobResult& result) {
     ordered_json error = ordered_json::array();
     for (const auto& group : result.error) {
         ordered_json& subsets = error.emplace_back(ordered_json::array());

@@ -26,9 +26,9 @@ struct JobResult {
 };
 
 /// Returns the result as JSON, with six digits for errors; null for NaN, "inf" for infinite.
-nlohmann::ordered_json unit_to_json(const JobResult& result);
+nlohmann::ordered_json job_to_json(const JobResult& result);
 
-/// Reads the output of `unit_to_json`. Throws nlohmann::json::exception for anything else.
+/// Reads the output of `job_to_json`. Throws nlohmann::json::exception for anything else.
 JobResult unit_from_json(const nlohmann::ordered_json& json);
 
 } // namespace dfdyn::tools

@@ -102,9 +102,9 @@ void run_subsets(const Plan& plan, const PlanData& data, std::span<const Trained
 }
 
 /// Returns the models of the case, or of the cases that it combines.
-std::vector<TrainedModel> train_unit(const Plan& plan, const CaseContext& context, const Case& one,
-                                     std::uint64_t seed, CaseMemories& memories,
-                                     const std::function<void(double)>& progress) {
+std::vector<TrainedModel> train_job(const Plan& plan, const CaseContext& context, const Case& one,
+                                    std::uint64_t seed, CaseMemories& memories,
+                                    const std::function<void(double)>& progress) {
     const std::vector<std::string> names = one.members.empty() ? std::vector{one.name} : one.members;
     std::vector<TrainedModel> models;
     for (const std::string& name : names) {
@@ -131,7 +131,7 @@ int columns_of(std::span<const TrainedModel> models) {
 JobResult run_job(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed,
                   CaseMemories& memories, int threads, const std::function<void(double)>& progress) {
     const CaseContext context{plan.robot, plan.outputs, data.start, threads};
-    const std::vector<TrainedModel> models = train_unit(
+    const std::vector<TrainedModel> models = train_job(
         plan, context, one, seed, memories, [&](double share) { progress(share_of_training * share); });
     const auto estimator = make_estimator(models, false);
     TickProgress ticks(data, progress);

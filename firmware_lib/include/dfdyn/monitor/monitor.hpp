@@ -34,8 +34,8 @@ struct Observation {
 /// Use in each tick, while the learner is idle:
 ///
 ///     if (monitor.refresh_due()) {
-///         regression.copy_weights(held.renew());
-///         monitor.renewed();
+///         regression.copy_weights(held.refresh());
+///         monitor.refreshed();
 ///     }
 ///     const auto estimate = estimator.tick(sample, budget);
 ///     if (estimate.status.predicted() && measured) {
@@ -149,7 +149,7 @@ class Monitor {
         since_refresh_ = 2 * constants_->refresh_blocks;
     }
 
-    /// Returns true if the delayed weights are due for a refresh; call `renewed` after it. Both copies are
+    /// Returns true if the delayed weights are due for a refresh; call `refreshed` after it. Both copies are
     /// due at the start and after a change, so that none is from before.
     [[nodiscard]] bool refresh_due() const noexcept {
         return !changing_ && since_refresh_ >= constants_->refresh_blocks;

@@ -24,10 +24,10 @@ namespace dfdyn::hal {
 /// was due and did not arrive is missing: there is no sample until the next value arrives (`pending`, Track).
 /// Positions must agree with the joint's motion (MotionGate). If the instants have a constant period, the
 /// samples have it too, independently of the devices' phases and jitter. An instant is chosen
-/// - by SYNC: `Moment::sync`; its instant is the SYNC at which the complete values were measured;
+/// - by SYNC: `SampleTrigger::sync`; its instant is the SYNC at which the complete values were measured;
 /// - by a timer: `now - delay`. With a delay of the output's latency and one period of the slowest source all
 ///   values are interpolated; with a shorter delay predictions are more recent, and values are held;
-/// - by the last frame of a set: `Moment::set`; its instant is that of the output's measurement.
+/// - by the last frame of a set: `SampleTrigger::set`; its instant is that of the output's measurement.
 /// The latency from the measurement to the frame is subtracted from each stamp first. An output is valid in
 /// at most one sample for each of its measurements.
 ///
@@ -63,8 +63,6 @@ class SampleAssembly {
           position_(config.joints, config.position, config.position_range, config.limits), output_(output),
           output_bus_(config.output_bus), watch_{BusWatch(config.clock), BusWatch(config.clock)},
           moments_(config.joints) {}
-
-    using SampleTrigger = SampleMoment; ///< an instant of which a sample can be assembled
 
     /// Accepts a frame of bus 0 or 1, read at `now_ns`. Returns the instant that it completes, if any.
     constexpr SampleTrigger take(const Frame& frame, std::int64_t now_ns, int bus = 0) noexcept {
@@ -326,7 +324,7 @@ class SampleAssembly {
     Output output_;
     int output_bus_;
     std::array<BusWatch, buses> watch_;
-    MomentWatch<n> moments_;
+    SampleTriggerWatch<n> moments_;
 
     std::int64_t last_instant_ns_ = std::numeric_limits<std::int64_t>::min();
     std::int64_t last_output_ns_ = std::numeric_limits<std::int64_t>::min();

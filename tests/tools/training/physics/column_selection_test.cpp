@@ -52,7 +52,7 @@ TEST_CASE("a column of rounding errors is never selected however well it fits") 
     CHECK(tools::select_columns(1e-15 * psi, 1e-3).columns == std::vector<Index>{0, 1, 2, 4});
 }
 
-TEST_CASE("columns are weighed with the largest parameter of a machine") {
+TEST_CASE("columns are weighted with the largest parameter of a machine") {
     tools::NormalSource random(dfdyn::tests::seed());
     MatrixXd psi = random.matrix(300, 3);
     for (Index c = 0; c < 3; ++c) {

@@ -11,7 +11,7 @@
 namespace dfdyn::hal {
 
 /// A moment at which a sample may be assembled.
-struct SampleMoment {
+struct SampleTrigger {
     enum class Kind : std::uint8_t {
         none,
         sync, ///< a SYNC came: the values measured at the one before are complete
@@ -23,12 +23,12 @@ struct SampleMoment {
 
 /// Finds the moments of an arm of n joints: SYNCs, and complete sets. O(n) per frame.
 template <int n>
-class MomentWatch {
+class SampleTriggerWatch {
   public:
-    explicit constexpr MomentWatch(Extent<n> joints) noexcept : joints_(joints) {}
+    explicit constexpr SampleTriggerWatch(Extent<n> joints) noexcept : joints_(joints) {}
 
     /// A SYNC with this stamp; every drive reports the same one.
-    constexpr SampleMoment synchronised(std::int64_t stamp_ns) noexcept {
+    constexpr SampleTrigger synchronised(std::int64_t stamp_ns) noexcept {
         const bool again = synchronised_ && stamp_ns == sync_ns_;
         if (again) {
             return {};
@@ -38,7 +38,7 @@ class MomentWatch {
         synchronised_ = true;
         sync_ns_ = stamp_ns;
         const bool ran_back = stamp_ns < before_ns; // so that the time of the one before is not known
-        return first || ran_back ? SampleMoment{} : SampleMoment{SampleMoment::Kind::sync, before_ns};
+        return first || ran_back ? SampleTrigger{} : SampleTrigger{SampleTrigger::Kind::sync, before_ns};
     }
 
     /// A new position of a joint.
@@ -55,7 +55,7 @@ class MomentWatch {
     }
 
     /// A moment if all joints and the output, measured at `output_ns`, are new.
-    constexpr SampleMoment completed(std::int64_t output_ns) noexcept {
+    constexpr SampleTrigger completed(std::int64_t output_ns) noexcept {
         const bool joints =
             std::all_of(seen_.begin(), seen_.begin() + joints_, [](bool seen) { return seen; });
         if (!joints || output_ns <= set_ns_) {
@@ -63,7 +63,7 @@ class MomentWatch {
         }
         seen_ = {};
         set_ns_ = output_ns;
-        return {SampleMoment::Kind::set, set_ns_};
+        return {SampleTrigger::Kind::set, set_ns_};
     }
 
   private:

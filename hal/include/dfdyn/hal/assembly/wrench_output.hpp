@@ -4,10 +4,10 @@
 #include "dfdyn/core/extent.hpp"
 #include "dfdyn/hal/assembly/track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/gate/frozen_wrench.hpp"
 #include "dfdyn/hal/gate/jump.hpp"
 #include "dfdyn/hal/gate/pairing.hpp"
 #include "dfdyn/hal/gate/saturation.hpp"
-#include "dfdyn/hal/gate/stuck.hpp"
 
 #include <algorithm>
 
@@ -23,7 +23,7 @@ class WrenchOutput {
         TrackConfig track;
         typename RangeGate<6>::Ranges range; ///< of the sensor
         PairGate::Config pairing;            ///< of the two frames of a wrench
-        int frozen_limit;                    ///< identical readings, see StuckGate
+        int frozen_limit;                    ///< identical readings, see FrozenWrenchGate
     };
 
     // A small stack has no room for a copy: NOLINTNEXTLINE(modernize-pass-by-value)
@@ -85,7 +85,7 @@ class WrenchOutput {
     [[nodiscard]] constexpr const Track<6, capacity>& track() const noexcept { return track_; }
     [[nodiscard]] constexpr const PairGate& pairing() const noexcept { return pairing_; }
     [[nodiscard]] constexpr const SaturationGate& saturation() const noexcept { return saturation_; }
-    [[nodiscard]] constexpr const StuckGate<6>& frozen() const noexcept { return frozen_; }
+    [[nodiscard]] constexpr const FrozenWrenchGate<6>& frozen() const noexcept { return frozen_; }
 
   private:
     /// The gates see every reading of the sensor; the first that objects is the reason.
@@ -117,7 +117,7 @@ class WrenchOutput {
     Source source_;
     PairGate pairing_;
     SaturationGate saturation_;
-    StuckGate<6> frozen_;
+    FrozenWrenchGate<6> frozen_;
     JumpGate<6> jump_;
     CollisionHold collision_;
     Track<6, capacity> track_;

@@ -61,7 +61,7 @@ class PairGate {
 
     /// How many first (0) or second (1) halves never found the other.
     [[nodiscard]] constexpr std::uint64_t unpaired(int part) const noexcept {
-        return orphans_[static_cast<std::size_t>(part)];
+        return unpaired_[static_cast<std::size_t>(part)];
     }
 
     /// Number of times a second sender was seen.
@@ -71,7 +71,7 @@ class PairGate {
     constexpr void drop(std::size_t part) noexcept {
         pending_[part] = false;
         orphan_ns_ = half_[part].stamp_ns;
-        ++orphans_[part];
+        ++unpaired_[part];
     }
 
     constexpr Result match(std::size_t newest) noexcept {
@@ -93,7 +93,7 @@ class PairGate {
     std::array<bool, 2> pending_{};
     std::int64_t orphan_ns_ = 0;
     std::uint64_t pairs_ = 0;
-    std::array<std::uint64_t, 2> orphans_{};
+    std::array<std::uint64_t, 2> unpaired_{};
     std::uint64_t doubles_ = 0;
 };
 

@@ -12,7 +12,7 @@ namespace dfdyn::hal {
 /// identifiers that nobody claims, one for frames that a decoder rejects.
 class UnexpectedFrames {
   public:
-    struct Offender {
+    struct Entry {
         std::uint32_t id = 0;
         bool extended = false;
         std::uint8_t length = 0;
@@ -30,11 +30,11 @@ class UnexpectedFrames {
     [[nodiscard]] constexpr std::uint64_t count() const noexcept { return count_; }
 
     /// Meaningful while `count()` is not 0.
-    [[nodiscard]] constexpr const Offender& first() const noexcept { return first_; }
+    [[nodiscard]] constexpr const Entry& first() const noexcept { return first_; }
 
   private:
     std::uint64_t count_ = 0;
-    Offender first_;
+    Entry first_;
 };
 
 } // namespace dfdyn::hal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/output/explaining_variable.hpp"
+#include "tools/diagnosis/output/plot_abscissa.hpp"
 
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/output/over_time.hpp"
@@ -31,30 +31,30 @@ double PlottedFinding::parameter(const char* name) const {
     return found == finding.parameters.end() ? 0 : found->value;
 }
 
-ExplainingVariable PlottedFinding::whole(std::string label, Eigen::VectorXd value) const {
+PlotAbscissa PlottedFinding::whole(std::string label, Eigen::VectorXd value) const {
     return {std::move(label), std::move(value), 0, signals.rows(), false};
 }
 
-ExplainingVariable over_velocity(const PlottedFinding& at) {
+PlotAbscissa over_velocity(const PlottedFinding& at) {
     return at.whole(at.named("velocity", "rad/s"), at.signals.measured.motion.velocity.col(at.joint()));
 }
 
-ExplainingVariable over_position(const PlottedFinding& at) {
+PlotAbscissa over_position(const PlottedFinding& at) {
     return at.whole(at.named("position", "rad"), at.signals.measured.motion.position.col(at.joint()));
 }
 
-ExplainingVariable over_time(const PlottedFinding& at) {
+PlotAbscissa over_time(const PlottedFinding& at) {
     const TimeAxis axis = time_axis(at.signals.measured);
-    ExplainingVariable variable = at.whole(axis.label, at.signals.measured.time_s.array() - axis.origin_s);
+    PlotAbscissa variable = at.whole(axis.label, at.signals.measured.time_s.array() - axis.origin_s);
     variable.time = true;
     return variable;
 }
 
-ExplainingVariable over_load(const PlottedFinding& at) {
+PlotAbscissa over_load(const PlottedFinding& at) {
     return at.whole(at.named("rigid-body torque", "N·m"), at.signals.joint_torque.col(at.joint()));
 }
 
-ExplainingVariable over_angle(const PlottedFinding& at) {
+PlotAbscissa over_angle(const PlottedFinding& at) {
     constexpr double full_turn = 2 * std::numbers::pi;
     constexpr double most_waves = 12;
     const double cycles = std::max(1.0, at.parameter(cycles_per_turn));
@@ -67,12 +67,12 @@ ExplainingVariable over_angle(const PlottedFinding& at) {
     return at.whole(at.named(within, "rad"), (position - period * (position / period).floor()).matrix());
 }
 
-ExplainingVariable over_output(const PlottedFinding& at) {
+PlotAbscissa over_output(const PlottedFinding& at) {
     return at.whole("simulated output", at.signals.nominal.col(at.finding.output));
 }
 
-ExplainingVariable explaining_variable(const DiagnosisSignals& signals, const Finding& finding,
-                                       const Eigen::VectorXd& share) {
+PlotAbscissa plot_abscissa(const DiagnosisSignals& signals, const Finding& finding,
+                           const Eigen::VectorXd& share) {
     const PlottedFinding plotted{signals, finding, share};
     const Effect& effect = effect_named(finding.effect);
     return effect.plotted_over != nullptr ? effect.plotted_over(plotted)

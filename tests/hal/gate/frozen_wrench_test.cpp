@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/hal/gate/stuck.hpp"
+#include "dfdyn/hal/gate/frozen_wrench.hpp"
 
 #include "tests/support/catch.hpp"
 
 namespace frozen_test {
 
-using Gate = dfdyn::hal::StuckGate<3>;
+using Gate = dfdyn::hal::FrozenWrenchGate<3>;
 
 TEST_CASE("a sensor that repeats itself is frozen from the limit on, until it moves") {
     Gate gate(4);
@@ -40,7 +40,7 @@ TEST_CASE("a sensor that now and then repeats a reading is not frozen") {
 }
 
 TEST_CASE("three equal readings over the periods of the limit are frozen, whatever came between") {
-    dfdyn::hal::StuckGate<3> gate(5, 2'000'000);
+    dfdyn::hal::FrozenWrenchGate<3> gate(5, 2'000'000);
     const Gate::Raw stuck{7, -3, 0};
     CHECK_FALSE(gate.frozen(stuck, 0));
     CHECK_FALSE(gate.frozen(stuck, 2'000'000));

@@ -12,13 +12,13 @@ namespace dfdyn::hal {
 /// Sees a sensor that repeats the very same raw values under fresh stamps. For wrenches, whose last bits are
 /// noise; a standing encoder is constant by right.
 template <int values>
-class StuckGate {
+class FrozenWrenchGate {
   public:
     using Raw = std::array<std::int32_t, static_cast<std::size_t>(values)>;
 
     /// `limit` identical readings in a row, at least 2, are too many; three over as many periods are, too.
     /// `period_ns`: of the readings; 0: not known.
-    explicit constexpr StuckGate(int limit, std::int64_t period_ns = 0) noexcept
+    explicit constexpr FrozenWrenchGate(int limit, std::int64_t period_ns = 0) noexcept
         : limit_(limit), longest_ns_((limit - 1) * period_ns - period_ns / 2) {}
 
     /// Whether this reading is the limit-th identical one in a row, or a later one. One or two that differ

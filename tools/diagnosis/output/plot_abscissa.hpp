@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 /// Abscissa for the plot of a finding's contribution to an output: velocity for friction, the angle within a
 /// turn for periodic effects, load, time, … If an effect depends on several inputs, the abscissa is the
 /// contribution itself, so that a correct cause lies on the diagonal.
-struct ExplainingVariable {
+struct PlotAbscissa {
     std::string label;
     Eigen::VectorXd value;             ///< T
     Eigen::Index first = 0, count = 0; ///< the rows to draw
@@ -31,24 +31,24 @@ struct PlottedFinding {
     /// value of a parameter; 0 if the finding has none with this name
     double parameter(const char* name) const;
     /// Returns the abscissa `value` (T) with all rows.
-    ExplainingVariable whole(std::string label, Eigen::VectorXd value) const;
+    PlotAbscissa whole(std::string label, Eigen::VectorXd value) const;
 };
 
 /// The parameter with the number of cycles per turn; a finding without it repeats once per turn.
 inline constexpr const char* cycles_per_turn = "cycles_per_rev";
 
 // Abscissas that several effects share.
-ExplainingVariable over_velocity(const PlottedFinding& at);
-ExplainingVariable over_position(const PlottedFinding& at);
-ExplainingVariable over_time(const PlottedFinding& at);
-ExplainingVariable over_load(const PlottedFinding& at);
-ExplainingVariable over_output(const PlottedFinding& at);
+PlotAbscissa over_velocity(const PlottedFinding& at);
+PlotAbscissa over_position(const PlottedFinding& at);
+PlotAbscissa over_time(const PlottedFinding& at);
+PlotAbscissa over_load(const PlottedFinding& at);
+PlotAbscissa over_output(const PlottedFinding& at);
 /// The angle within one turn, or the part of it that the joint covers. For a ripple with many cycles, the
 /// angle within one cycle, because a whole turn would be illegible.
-ExplainingVariable over_angle(const PlottedFinding& at);
+PlotAbscissa over_angle(const PlottedFinding& at);
 
 /// Returns the abscissa for the finding's effect. `share` (T): contribution of the finding to its output.
-ExplainingVariable explaining_variable(const DiagnosisSignals& signals, const Finding& finding,
-                                       const Eigen::VectorXd& share);
+PlotAbscissa plot_abscissa(const DiagnosisSignals& signals, const Finding& finding,
+                           const Eigen::VectorXd& share);
 
 } // namespace dfdyn::tools
