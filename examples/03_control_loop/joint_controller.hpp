@@ -27,7 +27,8 @@ class JointController {
     static constexpr std::int64_t period_ns = 1'000'000; ///< of `update`
     static constexpr int ticks_per_sample = 8;           ///< the model was trained on samples 8 ms apart
     static constexpr int hold_ticks = 5; ///< for which a joint without measurements keeps its correction
-    static constexpr float step_share = 0.02F; ///< of the limit, per tick: 20 limits per second
+    static constexpr float observer_share = 0.3F; ///< of the limit: the observer's largest effort
+    static constexpr float step_share = 0.02F;    ///< of the limit, per tick: 20 limits per second
 
     using Learned = dfdyn::LearnedTorque<ur5_model::Model>;     ///< the model and its state
     using Forward = dfdyn::FeedForward<Learned>;                ///< nominal and learned effort
@@ -59,8 +60,9 @@ class JointController {
                               .limit = all(gains.limit),
                               .cap = all(0.5F * gains.limit),
                               .rate = all(20 * gains.limit),
-                              .bandwidth = all(gains.bandwidth)}),
-          observer_({}, {1e-9F * period_ns, all(gains.bandwidth), all(0.3F * gains.limit)}) {}
+                              .bandwidth = all(gains.bandwidth),
+                              .observer_limit = all(observer_share * gains.limit)}),
+          observer_({}, {1e-9F * period_ns, all(gains.bandwidth), all(observer_share * gains.limit)}) {}
 
     /// Starts the controller. The arm rests at the beginning of the reference.
     void activate(const State& state) {

@@ -3,10 +3,12 @@
 
 #include "dfdyn/control/learner_pair.hpp"
 #include "tests/firmware_lib/control/joint.hpp"
+#include "tests/firmware_lib/support/counted.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -237,25 +239,122 @@ TEST_CASE("where one learner has no prediction the other one's is used at once")
     }
 }
 
-TEST_CASE("with an observer a fast error of a forecast counts more than a slow one") {
-    const auto share_with = [](double bandwidth) {
-        Forward::Settings with_observer = settings;
-        with_observer.bandwidth = {{bandwidth}};
-        ToldLearner learner;
-        Forward forward(learner, with_observer);
-        constexpr double nominal = 10;
-        constexpr double needed = 50;
-        forward.begin(0, &nominal);
-        for (int tick = 0; tick < 2000; ++tick) { // the forecast is wrong by ±40 N·m, by ±20 in the tick
-            learner.forecast = needed + (tick / ticks_per_sample % 2 == 0 ? 40 : -40);
+TEST_CASE(
+    "learners with different numbers of forecasts form a pair, and known forecasts stand for unknown ones") {
+    ToldLearner first, second, third;
+    using Two = LearnerPair<ToldLearner, ToldLearner>;
+    Two two(first, second);
+    LearnerPair<Two, ToldLearner> three(two, third);
+    LearnerPair<ToldLearner, Two> reversed(third, two);
+    first.forecast = 1;
+    second.forecast = 2;
+    third.forecast = 3;
+    constexpr double position = 0;
+    std::array<double, 4> torque{0, 0, 0, -7}; // the last value is not a forecast
+    const auto predicted = [&](auto& pair) {
+        CHECK(pair.predict(0, &position, torque.data()));
+        return torque;
+    };
+    CHECK(predicted(three) == std::array<double, 4>{1, 2, 3, -7});
+    CHECK(predicted(reversed) == std::array<double, 4>{3, 1, 2, -7});
+    third.knows = false;
+    CHECK(predicted(three) == std::array<double, 4>{1, 2, 1, -7});
+    CHECK(predicted(reversed) == std::array<double, 4>{1, 1, 2, -7});
+    third.knows = true;
+    first.knows = second.knows = false;
+    CHECK(predicted(three) == std::array<double, 4>{3, 3, 3, -7});
+    CHECK(predicted(reversed) == std::array<double, 4>{3, 3, 3, -7});
+}
+
+/// A feed-forward beside an observer.
+struct ObservedRun {
+    ToldLearner learner;
+    Forward forward;
+    bool compares = true;
+    int tick = 0;
+
+    static Forward::Settings beside(double bandwidth, double observer_limit) {
+        Forward::Settings result = settings;
+        result.bandwidth = {{bandwidth}};
+        result.observer_limit = {{observer_limit}};
+        return result;
+    }
+    ObservedRun(double bandwidth, double observer_limit)
+        : forward(learner, beside(bandwidth, observer_limit)) {
+        constexpr double start = 0;
+        forward.begin(0, &start);
+    }
+
+    /// Runs ticks whose final command is `needed`; `forecast`: by the count of knots.
+    void go(double seconds, double nominal, double needed, const std::function<double(int)>& forecast) {
+        const auto end = tick + std::llround(seconds / period_s);
+        for (; tick < end; ++tick) {
+            learner.forecast = forecast(tick / ticks_per_sample);
             forward.update({}, &nominal);
-            forward.commanded(&needed);
+            if (compares) {
+                forward.commanded(&needed);
+            }
             forward.measured(0, &nominal, &needed);
         }
-        return forward.share()[0];
+    }
+};
+
+TEST_CASE("with an observer a fast error of a forecast counts more than a slow one") {
+    const auto share_with = [](double bandwidth) {
+        ObservedRun run(bandwidth, 100);
+        run.go(4, 10, 50, [](int knot) { return 50 + (knot % 2 == 0 ? 40 : -40); }); // ±20 in the tick
+        return run.forward.share()[0];
     };
     CHECK(share_with(0) > 0.9);
     CHECK(share_with(20) < 0.2);
+}
+
+TEST_CASE("a constant error counts as far as it exceeds what the observer can take over") {
+    const auto share_with = [](double observer_limit) {
+        ObservedRun run(20, observer_limit);
+        for (int knot = 0; knot < 500; ++knot) { // the nominal torque is wrong by ±40 N·m, the forecast by 90
+            run.go(ticks_per_sample * period_s, knot % 2 == 0 ? 40 : -40, 0, [](int) { return 90; });
+        }
+        return run.forward.share()[0];
+    };
+    CHECK(share_with(100) > 0.7);
+    CHECK(share_with(30) < 0.2);
+}
+
+TEST_CASE("a forecast that was absurd at one knot is used again within a second") {
+    for (const double absurd : {1e20, -1e300, 1e5}) {
+        CAPTURE(absurd);
+        ObservedRun run(20, 30);
+        const auto right = [](int knot) { return knot % 2 == 0 ? 49 : 51; };
+        run.go(3, 10, 50, right);
+        REQUIRE(run.forward.share()[0] > 0.95);
+        run.go(ticks_per_sample * period_s, 10, 50, [=](int) { return absurd; });
+        run.go(1, 10, 50, right);
+        CHECK(run.forward.share()[0] > 0.95);
+    }
+}
+
+TEST_CASE("the slow error of a forecast is forgotten while nothing is compared") {
+    ObservedRun run(2, 100);
+    run.go(6, 5, 0, [](int) { return 60; });
+    run.compares = false;
+    run.go(3, 5, 0, [](int) { return 60; });
+    run.compares = true; // now the forecast is right, and the nominal torque is wrong in both directions
+    for (int knot = 0; knot < 200; ++knot) {
+        run.go(ticks_per_sample * period_s, knot % 2 == 0 ? 15 : -15, 0, [](int) { return 0; });
+    }
+    CHECK(run.forward.share()[0] > 0.7);
+}
+
+TEST_CASE("other forecasts are combined with the shares of the command's") {
+    PairRun run;
+    run.first.forecast = 50;
+    run.second.forecast = -30;
+    run.go(3);
+    const std::array<double, 2> at_rest{7, 1000};
+    double torque = 0;
+    run.forward.combine(at_rest.data(), &torque);
+    CHECK(torque == Approx(7).margin(2));
 }
 
 /// A joint under feedback and feed-forward that has to hold a load, tick by tick.
@@ -320,6 +419,53 @@ TEST_CASE("a correct forecast is used in a closed loop and a wrong or oscillatin
         CHECK(other.largest_error < 40.0 / 800 + sag); // plus the largest effect of the wrong torque
         other.go(1, wrong);
         CHECK(other.largest_error < 3 * sag);
+    }
+}
+
+/// A learner of two forecasts of two torques, whose own operations are not counted.
+struct CountedLearner {
+    using Scalar = Counted<double>;
+    static constexpr int outputs = 2;
+    static constexpr int forecasts = 2;
+    [[nodiscard]] static constexpr Extent<2> forecast_count() noexcept { return {}; }
+    [[nodiscard]] static constexpr Extent<2> output_count() noexcept { return {}; }
+    void begin(std::int64_t /*time_ns*/, const Scalar* /*position*/) {}
+    void learn(std::int64_t /*time_ns*/, const Scalar* /*position*/, const Scalar* /*torque*/) {}
+    void go_on() {}
+    bool predict(std::int64_t time_ns, const Scalar* /*position*/, Scalar* torque) {
+        for (int i = 0; i < outputs * forecasts; ++i) {
+            torque[i] = std::sin(1e-9 * static_cast<double>((1 + i) * time_ns));
+        }
+        return true;
+    }
+};
+
+TEST_CASE("a feed-forward of several forecasts costs at most what its cost function says") {
+    using Torques = FeedForward<CountedLearner>::Torques;
+    CountedLearner learner;
+    FeedForward<CountedLearner> forward(learner, {.period_ns = period_ns,
+                                                  .ticks_per_sample = ticks_per_sample,
+                                                  .limit = {{100, 100}},
+                                                  .cap = {{60, 60}},
+                                                  .rate = {{2000, 2000}},
+                                                  .bandwidth = {{20, 20}},
+                                                  .observer_limit = {{30, 30}}});
+    const Torques nominal{{0.3, 0.4}};
+    forward.begin(0, nominal.data());
+    std::int64_t most[2] = {0, 0}; // between knots, at knots
+    for (int tick = 0; tick < 2000; ++tick) {
+        const std::int64_t before = counted_operations;
+        forward.update({}, nominal.data());
+        if (tick % 100 != 0) { // after a knot without comparison the slow errors fade, too
+            forward.commanded(nominal.data());
+        }
+        std::int64_t& largest = most[tick % ticks_per_sample == 0 ? 1 : 0];
+        largest = std::max(largest, counted_operations - before);
+    }
+    for (const bool at_knot : {false, true}) {
+        CAPTURE(at_knot);
+        CHECK(most[at_knot] <= forward.cost(at_knot));
+        CHECK(most[at_knot] >= forward.cost(at_knot) - 20); // part of it arises with known noise only
     }
 }
 

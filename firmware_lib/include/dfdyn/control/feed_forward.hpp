@@ -39,8 +39,10 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 /// detected. Until `memory_s` of comparisons is available, only the nominal torque is used.
 ///
 /// A `DisturbanceObserver` takes over slow errors of a forecast, and leaves fast ones as tracking error. With
-/// its bandwidth in the settings, each error is therefore high-pass filtered with this bandwidth before it is
-/// compared, and its slow part counts with the share `slow_share` only.
+/// its bandwidth and limit in the settings, each error is therefore high-pass filtered with this bandwidth
+/// before it is compared: its slow part, as far as the observer's limit reaches, counts with the share
+/// `slow_share` only. Errors beyond ± `limit` count as `limit`, and slow parts fade while nothing is
+/// compared, so one absurd forecast is forgotten within the memory.
 ///
 /// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`, and the
 /// shares of the forecasts within it change in `fall_s`. It adds at most `cap` to the nominal torque and
@@ -53,8 +55,7 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 ///         measured(time, position, torque that was in effect then);   // nullptr if unknown
 ///
 /// Learn from the command that was in effect when the position was read rather than from a torque sensor:
-/// offset and scale errors of a sensor then have no effect. Cost per tick: the learner's, plus at
-/// most 25 n multiply-adds per compared torque at a knot and 12 n otherwise.
+/// offset and scale errors of a sensor then have no effect. Cost per tick: the learner's and `cost()`.
 template <TorqueLearner Learner>
 class FeedForward {
   public:
@@ -77,7 +78,8 @@ class FeedForward {
         /// Weight of the error that the observer takes over, 0 … 1. Chosen on the iCub's arm with tripled
         /// friction and on motions of both arms that stop and go: 0 suits these, 1 the former.
         Scalar slow_share = Scalar(0.3);
-        Torques bandwidth{}; ///< of the disturbance observer, rad/s, ≥ 0; 0: none
+        Torques bandwidth{};      ///< of the disturbance observer, rad/s, ≥ 0; 0: none
+        Torques observer_limit{}; ///< of its estimate, N·m, ≥ 0; 0: it takes over nothing
     };
 
     /// Ticks by which the interpolation leads. A command is held for a tick, so on average it acts half a
@@ -94,10 +96,14 @@ class FeedForward {
           combination_(extent<sum(forecasts, 1)>(forecast_count_ + 1), joints_,
                        settings.memory_s / sample_period_s(settings)),
           compared_(Compared::zeros(extent<product(sum(forecasts, 1), n)>((forecast_count_ + 1) * joints_))),
-          slow_(compared_), error_(compared_),
+          slow_(compared_), error_(compared_), followed_(Torques::zeros(joints_)),
           from_(Forecasts::zeros(extent<product(forecasts, n)>(forecast_count_ * joints_))), to_(from_),
           mix_(from_), ahead_(Torques::zeros(joints_)), share_(ahead_), part_(ahead_), torque_(ahead_),
-          zero_(ahead_) {}
+          zero_(ahead_) {
+        for (int k = 0; k < joints_; ++k) {
+            followed_[k] = std::min(settings_.bandwidth[k] * sample_period_s(settings_), Scalar(1));
+        }
+    }
 
     /// Starts a motion. The arm rests at `position` (n values, rad).
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
@@ -112,6 +118,7 @@ class FeedForward {
         std::fill(mix_.begin(), mix_.end(), Scalar(1) / static_cast<Scalar>(int{forecast_count_}));
         std::fill(slow_.begin(), slow_.end(), Scalar(0));
         known_ = next_known_ = false;
+        was_compared_ = true;
     }
 
     /// Includes or excludes the learned part in the torque, without a step. Learning continues in both cases.
@@ -157,11 +164,12 @@ class FeedForward {
         }
         for (int i = 0; i < compared_.size(); ++i) {
             const int k = i % joints_;
-            const Scalar followed = std::min(settings_.bandwidth[k] * sample_period_s(settings_), Scalar(1));
-            const Scalar error = compared_[i] - torque[k];
-            error_[i] = error - (1 - settings_.slow_share) * slow_[i];
-            slow_[i] += followed * (error - slow_[i]);
+            const Scalar error = bounded(compared_[i] - torque[k], settings_.limit[k]);
+            const Scalar taken_over = bounded(slow_[i], settings_.observer_limit[k]);
+            error_[i] = error - (1 - settings_.slow_share) * taken_over;
+            slow_[i] += followed_[k] * (error - slow_[i]);
         }
+        was_compared_ = true;
         combination_.learn(error_.data(), zero_.data());
         judged_ = std::min(judged_ + 1, judged_for_);
     }
@@ -180,14 +188,35 @@ class FeedForward {
 
     /// Returns the share of the learned forecast in each joint's torque, 0 … 1.
     [[nodiscard]] const Torques& share() const noexcept { return share_; }
+    /// Combines other forecasts (`forecast_count()` times n values, one forecast after the other) into n
+    /// learned torques, as the present command combines its own: for example forecasts of the arm at rest,
+    /// to hold it after a stop.
+    void combine(const Scalar* other, Scalar* torque) const noexcept {
+        for (int k = 0; k < joints_; ++k) {
+            torque[k] = 0;
+            for (int i = k; i < mix_.size(); i += joints_) {
+                torque[k] += mix_[i] * other[i];
+            }
+        }
+    }
     /// Returns the learned part of the present torque, N·m.
     [[nodiscard]] const Torques& learned_part() const noexcept { return part_; }
     /// Returns the learner, for its counters and snapshots.
     [[nodiscard]] const Learner& learner() const noexcept { return *learner_; }
 
+    /// Returns the most multiply-adds of `update` and `commanded` in a tick, without the learner's.
+    /// `at_knot`: in a tick with a knot; otherwise between knots.
+    [[nodiscard]] std::int64_t cost(bool at_knot) const noexcept {
+        const std::int64_t of_learner = from_.size();
+        const std::int64_t between = 1 + 10 * joints_ + 5 * of_learner;
+        const Cost compare = Combination::cost(extent<sum(forecasts, 1)>(forecast_count_ + 1), joints_);
+        return between + (at_knot ? 5 * joints_ + of_learner + 3 * compared_.size() + compare.learn : 0);
+    }
+
   private:
     using Forecasts = Storage<Scalar, product(forecasts, n)>;
     using Compared = Storage<Scalar, product(sum(forecasts, 1), n)>;
+    using Combination = ForecastCombination<Scalar, sum(forecasts, 1), n>;
 
     static constexpr Scalar sample_period_s(const Settings& settings) noexcept {
         return Scalar(1e-9) * static_cast<Scalar>(settings.period_ns) *
@@ -202,6 +231,10 @@ class FeedForward {
     }
 
     void go_to_next_knot(const Reference<Scalar, n>& reference) noexcept {
+        for (int i = 0; i < slow_.size() && !was_compared_; ++i) {
+            slow_[i] -= followed_[i % joints_] * slow_[i];
+        }
+        was_compared_ = false;
         knot_ns_ += settings_.period_ns * settings_.ticks_per_sample;
         for (int k = 0; k < joints_; ++k) {
             ahead_[k] = position_after(reference, k, sample_period_s(settings_));
@@ -226,7 +259,7 @@ class FeedForward {
             total += earned[i];
         }
         for (int i = k; total > 0 && i < mix_.size(); i += joints_) {
-            farthest = std::max(farthest, std::abs(earned[i] / total - mix_[i]));
+            farthest = std::max(farthest, Scalar(std::abs(earned[i] / total - mix_[i])));
         }
         const Scalar step = std::min(Scalar(1), period_s() / settings_.fall_s / farthest);
         for (int i = k; farthest > 0 && i < mix_.size(); i += joints_) {
@@ -254,9 +287,10 @@ class FeedForward {
     [[no_unique_address]] Extent<forecasts> forecast_count_;
     Settings settings_;
     int judged_for_; ///< knots with a comparison until the learner is used
-    ForecastCombination<Scalar, sum(forecasts, 1), n> combination_;
+    Combination combination_;
     Compared compared_;     ///< torques of the present knot: the nominal ones, then the forecasts
     Compared slow_, error_; ///< their errors, low-pass filtered, and as they are compared
+    Torques followed_;      ///< share of an error that its slow part follows in a sample period
     Forecasts from_, to_;   ///< forecasts for the present and for the next knot
     Forecasts mix_;         ///< shares of the forecasts in the learned part
     Torques ahead_;
@@ -268,6 +302,7 @@ class FeedForward {
     bool enabled_ = true;
     bool known_ = false, next_known_ = false; ///< whether the learner could predict each of the two knots
     bool at_knot_ = false;
+    bool was_compared_ = true; ///< since the last knot
 };
 
 } // namespace dfdyn

@@ -3,7 +3,6 @@
 
 #include "dfdyn/control/feed_forward.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <type_traits>
 
@@ -14,8 +13,8 @@ namespace dfdyn {
 /// a second and an innovation patience of 0: P is right soon after a change of the arm, SPK is better in
 /// between.
 ///
-/// Refers to both learners, which must outlive it and have the same sample period. The cost of a tick is the
-/// sum of both. Never allocates.
+/// Refers to both learners, which must outlive it and have the same sample period. Either may be a pair
+/// itself. The cost of a tick is the sum of both. Never allocates.
 template <TorqueLearner First, TorqueLearner Second>
 class LearnerPair {
   public:
@@ -51,23 +50,29 @@ class LearnerPair {
         second_->go_on();
     }
 
-    /// Writes the forecasts of both, `forecasts` times n torques. If one learner has none, its forecasts are
-    /// those of the other. Returns false if neither has one.
+    /// Writes the forecasts of both, `forecast_count()` times n torques. If one learner has no prediction,
+    /// the other's forecasts stand for its own, in turn; their errors then count as its own, too. Returns
+    /// false if neither has one.
     bool predict(std::int64_t time_ns, const Scalar* position, Scalar* torque) noexcept {
         const int size = first_->forecast_count() * output_count();
+        const int second_size = second_->forecast_count() * output_count();
         Scalar* const second = torque + size;
         const bool first_known = first_->predict(time_ns, position, torque);
         const bool second_known = second_->predict(time_ns, position, second);
         if (!first_known && second_known) {
-            std::copy_n(second, size, torque);
+            repeat(second, second_size, torque, size);
         } else if (first_known && !second_known) {
-            std::copy_n(torque, size, second);
+            repeat(torque, size, second, second_size);
         }
         return first_known || second_known;
     }
 
   private:
-    static_assert(First::forecasts == Second::forecasts, "both learners must have equally many forecasts");
+    static void repeat(const Scalar* from, int from_size, Scalar* to, int to_size) noexcept {
+        for (int i = 0; i < to_size; ++i) {
+            to[i] = from[i % from_size];
+        }
+    }
 
     First* first_;
     Second* second_;
