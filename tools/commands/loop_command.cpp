@@ -68,7 +68,8 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
     command
         .add_option(
             "--learned-limit", limits.learned_limit,
-            "What is learned adds at most this share of the torque limit to the rigid body's torque; one "
+            "What is learned (the model's forecast and, for SPK, a second one of its physics alone with a "
+            "memory of 0.53 s) adds at most this share of the torque limit to the rigid body's torque; one "
             "value, or one per joint; 0: it is learned, not used. None: 0.5")
         ->delimiter(',')
         ->check(number_in(0.0, 1.0))

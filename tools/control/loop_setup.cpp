@@ -215,7 +215,8 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
             per_joint(limits.learned_limit, robot, "--learned-limit").cwiseProduct(config.torque_limit);
     }
     FeedForward feed_forward(robot, scenario.actuators.rotor_inertia, std::move(model), config.period_s,
-                             config.knot_ticks, config.torque_limit, learned_limit, config.bandwidth);
+                             config.knot_ticks, config.torque_limit, learned_limit, config.bandwidth,
+                             ControlLoop::observer_share * config.torque_limit);
     std::unique_ptr<Task> task = make();
     return std::make_unique<ControlLoop>(std::move(config), std::move(feed_forward), std::move(task));
 }

@@ -26,7 +26,7 @@ JointVector joint_vector(const Torques& values) {
 FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                          std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
                          const JointVector& limit, const JointVector& learned_limit,
-                         const JointVector& bandwidth)
+                         const JointVector& bandwidth, const JointVector& observer_limit)
     : dynamics_(nominal, rotor_inertia), knot_ticks_(knot_ticks), cap_(learned_limit), period_s_(period_s),
       compensation_(JointVector::Zero(limit.size())), wanted_compensation_(compensation_),
       inertia_(JointVector::Zero(dynamics_.joint_count())) {
@@ -38,7 +38,8 @@ FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                                                 .limit = torques(limit),
                                                 .cap = torques(cap_),
                                                 .rate = torques(limit / full_scale_s),
-                                                .bandwidth = torques(bandwidth)});
+                                                .bandwidth = torques(bandwidth),
+                                                .observer_limit = torques(observer_limit)});
         reference_ = {torques(inertia_), torques(inertia_), torques(inertia_)};
     }
 }
@@ -107,8 +108,10 @@ JointVector FeedForward::holding(const Reference& reference) {
     if (held_learned_.size() == 0) {
         held_learned_ = joint_vector(core_->learned_part());
     }
-    JointVector learned;
-    if (learned_->rest(reference.position, learned)) {
+    JointVector forecasts;
+    if (learned_->rest(reference.position, forecasts)) {
+        JointVector learned(torque.size());
+        core_->combine(forecasts.data(), learned.data());
         const JointVector beyond = learned - gravity(reference.position);
         held_learned_ = learned_share().cwiseProduct(beyond.cwiseMin(cap_).cwiseMax(-cap_));
     }

@@ -18,10 +18,12 @@ class FeedForward {
   public:
     /// `learned`: an optional model; `knot_ticks`: ticks of its sample period. `limit`: of each joint's
     /// torque, N·m; `learned_limit`: of the learned torque in addition to the nominal rigid body.
-    /// `bandwidth`: of the loop's disturbance observer, rad/s per joint; 0: none.
+    /// `bandwidth`: of the loop's disturbance observer, rad/s per joint; 0: none. `observer_limit`: of its
+    /// torque, N·m.
     FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                 std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
-                const JointVector& limit, const JointVector& learned_limit, const JointVector& bandwidth);
+                const JointVector& limit, const JointVector& learned_limit, const JointVector& bandwidth,
+                const JointVector& observer_limit);
 
     /// Enables or disables the learned torque, without a step. Learning continues in both states.
     void enable_learned(bool on) noexcept;
@@ -46,9 +48,10 @@ class FeedForward {
     JointVector gravity(const JointVector& position);
 
     /// Computes the torque (N·m) that brakes the arm along `reference` or holds it there: the nominal rigid
-    /// body, plus the learned model's prediction at rest with its share at the end of the motion. Only after
-    /// a motion has ended; call it once per tick. The learned part is updated every few calls, with at most
-    /// one evaluation of the model per call. Until the first update it is that of the motion.
+    /// body, plus the learned forecasts at rest, combined as at the end of the motion and with their share
+    /// then. Only after a motion has ended; call it once per tick. The learned part is updated every few
+    /// calls, with at most one evaluation of the model per call. Until the first update it is that of the
+    /// motion.
     JointVector holding(const Reference& reference);
 
     /// Returns the monitor's last verdict, once; null if there is none.

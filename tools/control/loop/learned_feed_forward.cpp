@@ -178,7 +178,8 @@ bool LearnedFeedForward::restore(std::span<const std::byte> snapshot) {
 
 std::int64_t LearnedFeedForward::tick_cost() const {
     const Cost cost = learner_.estimator->cost();
-    std::int64_t total = 2 * (cost.predict + cost.variance) + learner_.share.operations;
+    // the learner's tick, and the follower's with a prediction from the learner's weights
+    std::int64_t total = 2 * (cost.predict + cost.variance) + learner_.share.operations + cost.predict;
     if (physics_) { // its own tick, and another prediction for the reference
         const Cost of_physics = physics_->estimator->cost();
         total += of_physics.predict + of_physics.variance + physics_->share.operations + cost.predict;
@@ -193,6 +194,10 @@ bool LearnedFeedForward::predict(std::int64_t time_ns, const double* reference, 
         std::fill_n(torque, static_cast<std::size_t>(forecast_count()) * prediction_.size(), 0.0);
         return false;
     }
+    return take_forecasts(torque);
+}
+
+bool LearnedFeedForward::take_forecasts(double* torque) {
     const bool known = take_prediction(learner_, torque);
     if (!physics_) {
         return known;
@@ -207,7 +212,7 @@ bool LearnedFeedForward::predict(std::int64_t time_ns, const double* reference, 
     return known || physics_known;
 }
 
-bool LearnedFeedForward::rest(const JointVector& position, JointVector& torque) {
+bool LearnedFeedForward::rest(const JointVector& position, JointVector& forecasts_at_rest) {
     if (rest_lag_ == 0) {
         follower_->begin_recording();
         rest_position_ = position;
@@ -218,8 +223,8 @@ bool LearnedFeedForward::rest(const JointVector& position, JointVector& torque) 
     if (rest_lag_ > 0 || !tick.status.estimated()) {
         return false;
     }
-    torque.resize(position.size());
-    return take_prediction(learner_, torque.data());
+    forecasts_at_rest.resize(forecast_count() * position.size());
+    return take_forecasts(forecasts_at_rest.data());
 }
 
 bool LearnedFeedForward::take_prediction(const Learner& learner, double* torque) {

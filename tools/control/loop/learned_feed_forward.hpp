@@ -74,10 +74,10 @@ class LearnedFeedForward {
     bool predict(std::int64_t time_ns, const double* reference, double* torque);
 
     /// Predicts the torque (N·m) that holds the arm at rest at `position`, after the motion has ended. Each
-    /// call adds one sample to the window. The call that completes the window writes `torque` for the
-    /// position of the first of these calls, and returns true if the prediction is valid. Then the next
-    /// window begins.
-    bool rest(const JointVector& position, JointVector& torque);
+    /// call adds one sample to the window. The call that completes the window writes the torques of each
+    /// forecast, as `predict` does, for the position of the first of these calls, and returns true if one is
+    /// valid. Then the next window begins.
+    bool rest(const JointVector& position, JointVector& forecasts_at_rest);
 
     /// Returns the learned state in the firmware's format, to continue after a restart.
     std::vector<std::byte> snapshot() const { return learner_.estimator->snapshot(); }
@@ -113,6 +113,8 @@ class LearnedFeedForward {
 
     /// Predicts from the follower's columns with these weights; false if they exceed the model's bounds.
     bool take_prediction(const Learner& learner, double* torque);
+    /// Writes each learner's prediction; one without a valid one gets the other's. False if none is valid.
+    bool take_forecasts(double* torque);
     std::span<const double> of_joints(const double* values) const { return {values, prediction_.size()}; }
 
     std::int64_t sample_period_ns_;
