@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a feed-forward compares the errors of forecasts, and what a tick costs.
+#include "tests/firmware_lib/control/told_learner.hpp"
+#include "tests/firmware_lib/support/counted.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+namespace feed_forward_errors_test {
+
+using namespace dfdyn;
+using namespace dfdyn::tests;
+using namespace dfdyn::tests::told;
+
+/// A feed-forward beside an observer.
+struct ObservedRun {
+    ToldLearner learner;
+    Forward forward;
+    bool compares = true;
+    int tick = 0;
+
+    static Forward::Settings beside(double bandwidth, double observer_limit) {
+        Forward::Settings result = settings;
+        result.bandwidth = {{bandwidth}};
+        result.observer_limit = {{observer_limit}};
+        return result;
+    }
+    ObservedRun(double bandwidth, double observer_limit)
+        : forward(learner, beside(bandwidth, observer_limit)) {
+        constexpr double start = 0;
+        forward.begin(0, &start);
+    }
+
+    /// Runs ticks whose final command is `needed`; `forecast`: by the count of knots.
+    void go(double seconds, double nominal, double needed, const std::function<double(int)>& forecast) {
+        const auto end = tick + std::llround(seconds / period_s);
+        for (; tick < end; ++tick) {
+            learner.forecast = forecast(tick / ticks_per_sample);
+            forward.update({}, &nominal);
+            if (compares) {
+                forward.commanded(&needed);
+            }
+            forward.measured(0, &nominal, &needed);
+        }
+    }
+};
+
+TEST_CASE("with an observer a fast error of a forecast counts more than a slow one") {
+    const auto share_with = [](double bandwidth) {
+        ObservedRun run(bandwidth, 100);
+        run.go(4, 10, 50, [](int knot) { return 50 + (knot % 2 == 0 ? 40 : -40); }); // ±20 in the tick
+        return run.forward.share()[0];
+    };
+    CHECK(share_with(0) > 0.9);
+    CHECK(share_with(20) < 0.2);
+}
+
+TEST_CASE("a constant error counts as far as it exceeds what the observer can take over") {
+    const auto share_with = [](double observer_limit) {
+        ObservedRun run(20, observer_limit);
+        for (int knot = 0; knot < 500; ++knot) { // the nominal torque is wrong by ±40 N·m, the forecast by 90
+            run.go(ticks_per_sample * period_s, knot % 2 == 0 ? 40 : -40, 0, [](int) { return 90; });
+        }
+        return run.forward.share()[0];
+    };
+    CHECK(share_with(100) > 0.7);
+    CHECK(share_with(30) < 0.2);
+}
+
+TEST_CASE("a forecast that was absurd at one knot is used again within a second") {
+    for (const double absurd : {1e20, -1e300, 1e5}) {
+        CAPTURE(absurd);
+        ObservedRun run(20, 30);
+        const auto right = [](int knot) { return knot % 2 == 0 ? 49 : 51; };
+        run.go(3, 10, 50, right);
+        REQUIRE(run.forward.share()[0] > 0.95);
+        run.go(ticks_per_sample * period_s, 10, 50, [=](int) { return absurd; });
+        run.go(1, 10, 50, right);
+        CHECK(run.forward.share()[0] > 0.95);
+    }
+}
+
+TEST_CASE("the slow error of a forecast is forgotten while nothing is compared") {
+    ObservedRun run(2, 100);
+    run.go(6, 5, 0, [](int) { return 60; });
+    run.compares = false;
+    run.go(3, 5, 0, [](int) { return 60; });
+    run.compares = true; // now the forecast is right, and the nominal torque is wrong in both directions
+    for (int knot = 0; knot < 200; ++knot) {
+        run.go(ticks_per_sample * period_s, knot % 2 == 0 ? 15 : -15, 0, [](int) { return 0; });
+    }
+    CHECK(run.forward.share()[0] > 0.7);
+}
+
+/// A learner of two forecasts of two torques, whose own operations are not counted.
+struct CountedLearner {
+    using Scalar = Counted<double>;
+    static constexpr int outputs = 2;
+    static constexpr int forecasts = 2;
+    [[nodiscard]] static constexpr Extent<2> forecast_count() noexcept { return {}; }
+    [[nodiscard]] static constexpr Extent<2> output_count() noexcept { return {}; }
+    void begin(std::int64_t /*time_ns*/, const Scalar* /*position*/) {}
+    void learn(std::int64_t /*time_ns*/, const Scalar* /*position*/, const Scalar* /*torque*/) {}
+    void go_on() {}
+    bool predict(std::int64_t time_ns, const Scalar* /*position*/, Scalar* torque) {
+        for (int i = 0; i < outputs * forecasts; ++i) {
+            torque[i] = std::sin(1e-9 * static_cast<double>((1 + i) * time_ns));
+        }
+        return true;
+    }
+};
+
+TEST_CASE("a feed-forward of several forecasts costs at most what its cost function says") {
+    using Torques = FeedForward<CountedLearner>::Torques;
+    CountedLearner learner;
+    FeedForward<CountedLearner> forward(learner, {.period_ns = period_ns,
+                                                  .ticks_per_sample = ticks_per_sample,
+                                                  .limit = {{100, 100}},
+                                                  .cap = {{60, 60}},
+                                                  .rate = {{2000, 2000}},
+                                                  .bandwidth = {{20, 20}},
+                                                  .observer_limit = {{30, 30}}});
+    const Torques nominal{{0.3, 0.4}};
+    forward.begin(0, nominal.data());
+    std::int64_t most[2] = {0, 0}; // between knots, at knots
+    for (int tick = 0; tick < 2000; ++tick) {
+        const std::int64_t before = counted_operations;
+        forward.update({}, nominal.data());
+        if (tick % 100 != 0) { // after a knot without comparison the slow errors fade, too
+            forward.commanded(nominal.data());
+        }
+        std::int64_t& largest = most[tick % ticks_per_sample == 0 ? 1 : 0];
+        largest = std::max(largest, counted_operations - before);
+    }
+    for (const bool at_knot : {false, true}) {
+        CAPTURE(at_knot);
+        CHECK(most[at_knot] <= forward.cost(at_knot));
+        CHECK(most[at_knot] >= forward.cost(at_knot) - 20); // part of it arises with known noise only
+    }
+}
+
+} // namespace feed_forward_errors_test
