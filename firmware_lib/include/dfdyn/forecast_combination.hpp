@@ -20,7 +20,8 @@ namespace dfdyn {
 /// square error:
 ///  - while samples are learned, for their predictions: the mean square error one step ahead over about
 ///    `memory` samples, times the variance of a measurement at this input divided by its mean over the same
-///    samples. Only the ratio of a member's variances is used, not their size;
+///    samples. Only the ratio of a member's variances is used, not their size, and at least 1, so that a
+///    member does not gain from having been uncertain for a while (after a reset of its covariance);
 ///  - for predictions with weights of some time ago: the same with the errors of such predictions (`ahead`).
 ///    Errors one step ahead mostly measure tracking, and do not show how a member predicts without learning;
 ///  - where nothing has been learned yet, or for some memories: the variance of the noise plus a factor times
@@ -30,7 +31,8 @@ namespace dfdyn {
 /// variances instead of a variance added to the mean square errors. Weights are in [0, 1] and sum to 1, so
 /// the combination of finite predictions lies between them. A square error is clipped to 10⁴ times the mean
 /// square error of the best member, so that an absurd error is forgotten within five memories; without
-/// `noise_std` the clipping begins once the memory is full.
+/// `noise_std` the clipping begins once the memory is full. A variance is clipped to 10 times the member's
+/// mean.
 ///
 ///     for each member j: estimate[j] = estimator[j].tick(sample, budget);   // into tables, member by member
 ///     combination.weigh(deviations);                        // at this input; without: by past errors alone
@@ -38,7 +40,7 @@ namespace dfdyn {
 ///     if the sample was not refused: combination.learn(predictions, ahead, sample.output.data());
 ///     else: combination.skip();
 ///
-/// Tables contain m values per member, member by member. Cost: `cost()`; 6 c m + 5 scalars for c members.
+/// Tables contain m values per member, member by member. Cost: `cost()`; 6 c m + 6 scalars for c members.
 /// Never allocates.
 template <class Scalar, int members, int m>
 class ForecastCombination {
@@ -78,7 +80,8 @@ class ForecastCombination {
         const bool known = noise_square_[0] > 0;
         trust_ = known ? Scalar(0) : Scalar(1);
         samples_ = known ? std::min(first_samples, memory_) : Scalar(0);
-        learning_ = false;
+        skipped_ = 0;
+        one_step_ = false;
         for (int i = 0; i < count(); ++i) {
             mean_square_[i] = mean_square_ahead_[i] = known ? noise_square_[i] : least;
             variance_[i] = mean_variance_[i] = mean_square_[i];
@@ -93,7 +96,7 @@ class ForecastCombination {
         for (int i = 0; i < count(); ++i) {
             variance_[i] = std::max(square(deviations[i], largest), noise_square_[i]);
         }
-        weigh((learning_ ? mean_square_ : mean_square_ahead_).data(), deviations, weights_.data());
+        weigh((one_step_ ? mean_square_ : mean_square_ahead_).data(), deviations, weights_.data());
     }
 
     /// Same, from the given mean square errors (see `copy_mean_squares`) into the table `weights`, which may
@@ -102,7 +105,8 @@ class ForecastCombination {
                          Scalar* weights) const noexcept {
         for (int i = 0; i < count(); ++i) {
             const Scalar variance = std::max(square(deviations[i], largest), noise_square_[i]);
-            const Scalar judged = mean_squares[i] * (variance / mean_variance_[i]);
+            const Scalar ratio = std::clamp(variance / mean_variance_[i], least_ratio, largest);
+            const Scalar judged = std::min(mean_squares[i] * ratio, largest); // finite, for `blended`
             const Scalar unjudged = noise_square_[i] + unjudged_factor_ * (variance - noise_square_[i]);
             weights[i] = std::clamp(blended(judged, unjudged), least, largest);
         }
@@ -137,7 +141,8 @@ class ForecastCombination {
             mean_square_ahead_[i] = blended(mean_square_ahead_[i], noise_square_[i]);
         }
         trust_ = 1;
-        learning_ = true;
+        skipped_ = 0;
+        one_step_ = true;
         // the scale of plausible errors is known
         const bool scaled = samples_ >= memory_ || noise_square_[0] > 0;
         samples_ = samples_ < memory_ ? samples_ + 1 : memory_;
@@ -146,19 +151,24 @@ class ForecastCombination {
             update(mean_square_ahead_, ahead, measured[k], k, scaled);
             for (int j = 0; j < members_; ++j) {
                 Scalar& mean = mean_variance_[at(j, k)];
-                const Scalar now = std::min(variance_[at(j, k)], scaled ? outlier * mean : largest);
+                const Scalar now = std::min(variance_[at(j, k)], scaled ? variance_outlier * mean : largest);
                 mean = std::clamp(mean + (now - mean) / samples_, least, largest);
             }
         }
         weigh();
     }
 
-    /// Accounts for a tick without learning: the influence of past errors decays, and after one memory the
-    /// members' noise and variances decide. The last errors before a standstill carry little information
-    /// about the next motion. Has no effect without `noise_std`.
+    /// Accounts for a tick without learning. Has no effect for an eighth of a memory (0.1 s at 0.8 s): single
+    /// refused or lost samples do not change the weights. Afterwards errors ahead replace those one step
+    /// ahead, as the members' parameters become older, and the influence of past errors decays: one more
+    /// memory later the members' noise and variances decide. The last errors before a standstill carry
+    /// little information about the next motion. Without `noise_std` nothing decays.
     constexpr void skip() noexcept {
-        trust_ *= noise_square_[0] > 0 ? 1 - 1 / memory_ : Scalar(1);
-        learning_ = false;
+        skipped_ = std::min(skipped_ + 1, memory_);
+        if (skipped_ > patience * memory_) {
+            trust_ *= noise_square_[0] > 0 ? 1 - 1 / memory_ : Scalar(1);
+            one_step_ = false;
+        }
     }
 
     /// Same as `learn` with `ahead` equal to `predictions`.
@@ -193,9 +203,13 @@ class ForecastCombination {
     /// changes nothing.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         const SnapshotResult result = read_snapshot(*this, identity(), buffer);
-        trust_ = 1;
-        learning_ = true;
-        weigh();
+        if (result == SnapshotResult::ok) {
+            trust_ = 1;
+            skipped_ = 0;
+            one_step_ = true;
+            variance_ = mean_variance_;
+            weigh();
+        }
         return result;
     }
 
@@ -215,7 +229,10 @@ class ForecastCombination {
     static constexpr Scalar least = Scalar(1e-30);  ///< smallest mean square error
     static constexpr Scalar largest = Scalar(1e30); ///< largest mean square error
     static constexpr Scalar outlier = Scalar(1e4); ///< bound of a square error, relative to the best member's
-    static constexpr Scalar first_samples = 10;    ///< weight of the noise at the start
+    static constexpr Scalar variance_outlier = 10; ///< bound of a variance, relative to the member's mean
+    static constexpr Scalar least_ratio = 1;       ///< a spike of a variance must not reduce later errors
+    static constexpr Scalar patience = Scalar(0.125); ///< skipped samples without effect, in memories
+    static constexpr Scalar first_samples = 10;       ///< weight of the noise at the start
     using Table = Storage<Scalar, size>;
 
     [[nodiscard]] constexpr int count() const noexcept { return members_ * outputs_; }
@@ -261,7 +278,7 @@ class ForecastCombination {
 
     /// Computes the weights from past errors alone.
     constexpr void weigh() noexcept {
-        const Table& errors = learning_ ? mean_square_ : mean_square_ahead_;
+        const Table& errors = one_step_ ? mean_square_ : mean_square_ahead_;
         std::copy(errors.begin(), errors.end(), weights_.begin());
         for (int k = 0; k < outputs_; ++k) {
             normalise(k, weights_.data());
@@ -291,7 +308,8 @@ class ForecastCombination {
     Scalar unjudged_factor_;
     Scalar samples_ = 0;    ///< memory of the means so far, at most `memory_`
     Scalar trust_ = 1;      ///< share of the past errors, in [0, 1]; the rest is the variances'
-    bool learning_ = false; ///< the last sample was learned
+    Scalar skipped_ = 0;    ///< samples since the last one that was learned, at most `memory_`
+    bool one_step_ = false; ///< errors one step ahead are used, not those ahead
     Table noise_square_;    ///< zero: unknown
     Table mean_square_;     ///< of errors one step ahead
     Table mean_square_ahead_;

@@ -229,6 +229,44 @@ TEST_CASE("once errors are known the ratio of a member's variances counts and no
     CHECK(ratio() == Approx(inverse_square(1 + 15 * unjudged)).epsilon(1e-3));
 }
 
+TEST_CASE("infinite deviations of nearly noiseless members give equal weights before any error is known") {
+    Values<float> noise_std{};
+    noise_std.fill(1e-6F);
+    Combination<float> combined(Extent<members>{}, Extent<outputs>{}, 100, noise_std.data());
+    Values<float> deviations{};
+    deviations.fill(GENERATE(std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN(),
+                             std::numeric_limits<float>::max()));
+    combined.weigh(deviations.data());
+    for (int i = 0; i < members * outputs; ++i) {
+        CHECK(combined.weights()[i] == Approx(1.0 / members));
+    }
+    deviations[0] = noise_std[0];
+    combined.weigh(deviations.data());
+    CHECK(combined.weights()[0] == Approx(1));
+}
+
+TEMPLATE_TEST_CASE("a short spike of a bad member's deviation does not raise its weight afterwards", "",
+                   float, double) {
+    Combination<TestType> combined = scaled_combination<TestType>(50);
+    const std::array<TestType, outputs> measured{};
+    const Values<TestType> error{3, 3, 1, 1, 2, 2};
+    const auto learn = [&](TestType deviation, int ticks) {
+        Values<TestType> deviations = noise<TestType>;
+        deviations[0] = deviation;
+        for (int t = 0; t < ticks; ++t) {
+            combined.weigh(deviations.data());
+            combined.learn(error.data(), measured.data());
+        }
+        combined.weigh(noise<TestType>.data());
+        return combined.weights()[0];
+    };
+    const TestType before = learn(noise<TestType>[0], 500);
+    const auto [deviation, ticks] = GENERATE(
+        table<TestType, int>({{std::numeric_limits<TestType>::infinity(), 1}, {1000, 5}, {1000, 50}}));
+    CHECK(learn(deviation, ticks) <= TestType(1.05) * before);
+    CHECK(learn(noise<TestType>[0], 1) <= TestType(1.05) * before);
+}
+
 TEST_CASE("after a memory without samples the weights follow the noise until the next sample") {
     Combination<double> combined = scaled_combination<double>(50);
     const std::array<double, outputs> measured{};
@@ -262,11 +300,62 @@ TEST_CASE("a member that only tracks has less weight in predictions ahead and wh
     combined.copy_mean_squares(of_ahead.data());
     combined.weigh(of_ahead.data(), noise<double>.data(), of_ahead.data());
     CHECK(of_ahead[2] > 0.99);
-    combined.skip();
+    for (int t = 0; t < 7; ++t) { // more than an eighth of the memory
+        combined.skip();
+    }
     combined.weigh(noise<double>.data());
     CHECK(combined.weights()[2] > 0.99);
     combined.learn(one_step.data(), ahead.data(), measured.data());
     CHECK(combined.weights()[0] > 0.9);
+}
+
+TEST_CASE("a single refused sample changes the combined prediction by little") {
+    Combination<double> combined = scaled_combination<double>(50);
+    const std::array<double, outputs> measured{};
+    const Values<double> one_step{0.1, 0.1, 0.3, 0.3, 5, 5};
+    const Values<double> ahead{2, 2, 0.3, 0.3, 5, 5};
+    for (int t = 0; t < 500; ++t) {
+        combined.learn(one_step.data(), ahead.data(), measured.data());
+    }
+    const auto predicted = [&] {
+        std::array<double, outputs> to{};
+        combined.weigh(noise<double>.data());
+        combined.combine(Values<double>{0, 0, 1, 1, 2, 2}.data(), to.data());
+        return to;
+    };
+    const std::array<double, outputs> before = predicted();
+    combined.skip();
+    CHECK(predicted()[0] == Approx(before[0]).margin(0.02));
+    CHECK(predicted()[1] == Approx(before[1]).margin(0.02));
+    combined.learn(one_step.data(), ahead.data(), measured.data());
+    CHECK(predicted()[0] == Approx(before[0]).margin(0.02));
+}
+
+TEST_CASE("a rejected snapshot does not change a combination between two samples") {
+    Combination<float> combined = scaled_combination<float>(50);
+    const std::array<float, outputs> measured{};
+    const Values<float> one_step{0.1F, 0.1F, 0.3F, 0.3F, 5, 5};
+    const Values<float> ahead{2, 2, 0.3F, 0.3F, 5, 5};
+    combined.learn(one_step.data(), ahead.data(), measured.data());
+    std::vector<std::byte> bytes(combined.snapshot_bytes());
+    REQUIRE(combined.snapshot(bytes) == SnapshotResult::ok);
+    bytes.back() ^= std::byte{1};
+    for (int t = 0; t < 20; ++t) {
+        combined.skip();
+    }
+    Values<float> deviations = noise<float>;
+    deviations[2] = 7;
+    combined.weigh(deviations.data());
+    Combination<float> untouched = combined;
+    const auto same = [&] {
+        return std::equal(combined.weights(), combined.weights() + members * outputs, untouched.weights());
+    };
+    REQUIRE(combined.restore(bytes) == SnapshotResult::corrupted);
+    CHECK(same());
+    for (Combination<float>* const each : {&combined, &untouched}) {
+        each->weigh(deviations.data());
+    }
+    CHECK(same());
 }
 
 TEST_CASE("a combination continues from its snapshot and rejects any other") {
