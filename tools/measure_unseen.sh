@@ -60,8 +60,9 @@ ratio() {
     ratios=$(for structure in NP P SPK combination; do
         figures "$out/$1.$structure.$2" "nRMSE, one step"
     done | awk '
-        NR < 4 { for (k = 1; k <= NF; ++k) if (NR == 1 || $k < best[k]) best[k] = $k }
-        NR == 4 { for (k = 1; k <= NF; ++k) printf "%.3f ", $k / best[k] }')
+        NR < 4 { for (k = 1; k <= NF; ++k) if ($k != "-" && (!(k in best) || $k < best[k])) best[k] = $k }
+        NR == 4 { for (k = 1; k <= NF; ++k)
+            if ($k == "-" || best[k] + 0 <= 0) printf "- "; else printf "%.3f ", $k / best[k] }')
     line "combination / best member" "$ratios" "- - - - - -"
 }
 
