@@ -41,6 +41,9 @@ void BusCheck::describe() {
         const hal::FrameList frames = description_->sensor->encode({});
         expect(span_of(frames), description_->output.rate_hz);
         name_sender(span_of(frames), "sensor");
+        for (const hal::Frame& frame : span_of(frames)) {
+            streams_[{frame.extended, frame.id}].of_sensor = true;
+        }
     }
     joints_.resize(zeros.size());
     restarts_.resize(zeros.size());
@@ -51,6 +54,9 @@ void BusCheck::describe() {
                 const hal::FrameList frames = board.board.encode({});
                 const hal::Frame& position = frames.frame.front();
                 name_sender(span_of(frames), "joint " + std::to_string(joint + 1));
+                for (const hal::Frame& frame : span_of(frames)) {
+                    streams_[{frame.extended, frame.id}].answers_sync = description_->synchronous;
+                }
                 position_keys_.at(static_cast<std::size_t>(joint)) = {position.extended, position.id};
                 const auto index = static_cast<std::size_t>(joint);
                 joints_.at(index) =
@@ -139,12 +145,16 @@ void BusCheck::take(const StreamClock::Timed& timed) {
     from_host_ += frame.origin == hal::Origin::this_host ? 1 : 0;
     BusStream* const stream = is_request(frame) ? nullptr : stream_of(frame);
     if (timed.stray) {
+        if (stream != nullptr) {
+            ++stream->strays;
+        }
         return;
     }
+    const bool overtaken = started_ && frame.stamp_ns < last_ns_;
     pass(frame.stamp_ns);
     watch_load(stream, bits);
     if (stream != nullptr) {
-        stream->take(frame, bits);
+        stream->take(frame, bits, overtaken);
         watch_order(*stream, frame.stamp_ns);
         watch_answers(*stream, frame);
     }
@@ -153,7 +163,7 @@ void BusCheck::take(const StreamClock::Timed& timed) {
     }
     const std::uint64_t rejected = arm_->bus().rejected.count();
     arm_->take(frame, last_ns_);
-    if (stream != nullptr && arm_->bus().rejected.count() != rejected) {
+    if (stream != nullptr && !stream->other_form && arm_->bus().rejected.count() != rejected) {
         ++stream->rejected;
     }
     watch_joints(frame);
@@ -190,7 +200,7 @@ void BusCheck::watch_order(const BusStream& stream, std::int64_t stamp_ns) {
 void BusCheck::watch_answers(BusStream& stream, const hal::Frame& frame) {
     if (sync_key_ && *sync_key_ == BusStreamKey{frame.extended, frame.id}) {
         sync_ns_ = frame.stamp_ns;
-    } else if (sync_key_ && sync_ns_ != 0 && stream.expected_hz > 0) {
+    } else if (stream.answers_sync && sync_ns_ != 0 && stream.expected_hz > 0) {
         stream.answers.take(frame.stamp_ns - sync_ns_, 1e9 / stream.expected_hz);
     }
 }
@@ -208,6 +218,7 @@ std::int64_t BusCheck::small_clock_step_ns() const {
     if (senders.size() < 2) {
         return 0;
     }
+    std::int64_t largest_ns = 0;
     for (const PhaseStep& step : regular.front()->phase_steps()) {
         const bool all = std::ranges::all_of(regular, [&](const BusStream* stream) {
             const double period_ns = 1e9 / stream->expected_hz;
@@ -217,11 +228,11 @@ std::int64_t BusCheck::small_clock_step_ns() const {
                 return apart_ns < 3 * period_ns && std::abs(off_ns) < same_step * period_ns;
             });
         });
-        if (all) {
-            return std::llround(step.step_ns);
+        if (all && std::abs(step.step_ns) > std::abs(static_cast<double>(largest_ns))) {
+            largest_ns = std::llround(step.step_ns);
         }
     }
-    return 0;
+    return largest_ns;
 }
 
 void BusCheck::watch_joints(const hal::Frame& frame) {
@@ -241,13 +252,14 @@ void BusCheck::watch_joints(const hal::Frame& frame) {
 
 /// Returns the stream of the frame's identifier; null if there is no room for another stream.
 BusStream* BusCheck::stream_of(const hal::Frame& frame) {
-    BusStreamKey key{frame.extended, frame.id};
-    const BusStreamKey described{!frame.extended, frame.id};
-    if (streams_.contains(described) && streams_[described].expected_hz > 0 && !streams_.contains(key)) {
-        key = described; // of another form than described
-        ++streams_[key].rejected;
-    }
+    const BusStreamKey key{frame.extended, frame.id};
     const auto found = streams_.find(key);
+    const auto other = streams_.find({!frame.extended, frame.id});
+    const bool is_other_form = other != streams_.end() && other->second.is_described() &&
+                               (found == streams_.end() || !found->second.is_described());
+    if (is_other_form) {
+        other->second.take_other_form();
+    }
     if (found != streams_.end() && found->second.count > 0) {
         return &found->second;
     }
@@ -255,7 +267,9 @@ BusStream* BusCheck::stream_of(const hal::Frame& frame) {
         return nullptr;
     }
     BusStream& stream = streams_[key];
-    stream.known = stream.known || claimed(frame);
+    // Of another form than described, if the described source is silent.
+    stream.known = stream.known || (is_other_form ? other->second.count == 0 : claimed(frame));
+    stream.other_form = is_other_form;
     stream.infers = !description_;
     return &stream;
 }
@@ -276,9 +290,9 @@ void BusCheck::assemble(std::int64_t now_ns) {
     }
 }
 
-const BusStream* BusCheck::position_stream(std::size_t joint) const {
+const BusStreams::value_type* BusCheck::position_stream(std::size_t joint) const {
     const auto found = streams_.find(position_keys_.at(joint));
-    return found == streams_.end() ? nullptr : &found->second;
+    return found == streams_.end() ? nullptr : &*found;
 }
 
 std::uint64_t BusCheck::device_losses() const noexcept {

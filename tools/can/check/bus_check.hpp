@@ -86,7 +86,7 @@ class BusCheck {
     /// Number of times that the joint's device reported a restart between its values.
     std::uint64_t restarts(std::size_t joint) const { return restarts_.at(joint); }
     /// The stream with the joint's positions; null if there is none.
-    const BusStream* position_stream(std::size_t joint) const;
+    const BusStreams::value_type* position_stream(std::size_t joint) const;
     /// The boards after all frames; empty without a description.
     const std::vector<BusBoard>& boards() const noexcept { return boards_; }
     /// The sensor after all frames; null without one.
@@ -151,6 +151,12 @@ std::vector<BusFinding> bus_findings(const BusCheck& check);
 
 /// Findings about single sources.
 std::vector<BusFinding> source_findings(const BusCheck& check);
+
+/// Returns true if a finding says that a source sends more frames than its sequence has.
+bool sends_more(const BusCheck& check, const BusStreams::value_type& source);
+
+/// Returns true if a finding says that frames of a source are lost or come late.
+bool is_late_or_lost(const BusCheck& check, const BusStreams::value_type& source);
 
 /// Findings about the joints' values and about the condition reported by the sensor.
 std::vector<BusFinding> value_findings(const BusCheck& check);

@@ -249,9 +249,8 @@ std::vector<BusFinding> bus_findings(const BusCheck& check) {
     std::ranges::move(source_findings(check), std::back_inserter(findings));
     std::ranges::move(value_findings(check), std::back_inserter(findings));
     const bool sensor = check.sensor() != nullptr;
-    const bool sensor_is_late = std::ranges::any_of(findings, [](const BusFinding& finding) {
-        return (finding.rule == "lost_frames" || finding.rule == "late_frames") &&
-               finding.what.find("sensor") != std::string::npos;
+    const bool sensor_is_late = std::ranges::any_of(check.streams(), [&](const auto& source) {
+        return source.second.of_sensor && is_late_or_lost(check, source);
     });
     for (const DeviceRule& rule : device_rules) {
         // Efforts of joints have their own rules.

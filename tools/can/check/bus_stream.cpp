@@ -17,34 +17,39 @@ constexpr double phase_gain = 0.125;  ///< gain of the phase-locked loop
 constexpr double steady_share = 0.75; ///< share of the first intervals
 constexpr double recent_share = 0.02; ///< of a frame, among those that are recent
 constexpr double shorter_than_a_period = 0.9;
+constexpr double longer_than_a_period = 1.5;
 constexpr double most_off_sequence = 0.4; ///< share of the period: largest distance from the sequence
 
 } // namespace
 
-void BusStream::take(const hal::Frame& frame, double frame_bits) {
+void BusStream::take(const hal::Frame& frame, double frame_bits, bool is_overtaken) {
     const bool first = count == 0;
     ++count;
     bits += frame_bits;
+    overtaken += is_overtaken ? 1 : 0;
     length = frame.length;
     if (first) {
         first_ns = last_ns = frame.stamp_ns;
         last_frame_ = frame;
+        waiting_forms_ = 0;
         return;
     }
     const bool repeats = frame.length == last_frame_.length && frame.data == last_frame_.data;
     const double interval_periods = seconds_of(frame.stamp_ns - last_ns) * expected_hz;
     copies += repeats && interval_periods < shorter_than_a_period ? 1 : 0;
+    replacing_forms_ += interval_periods > longer_than_a_period ? waiting_forms_ : 0;
+    waiting_forms_ = 0;
     last_frame_ = frame;
-    take_interval(frame.stamp_ns - last_ns);
+    take_interval(frame.stamp_ns - last_ns, is_overtaken);
     last_ns = std::max(last_ns, frame.stamp_ns);
 }
 
-void BusStream::take_interval(std::int64_t interval_ns) {
+void BusStream::take_interval(std::int64_t interval_ns, bool is_overtaken) {
     not_increasing += interval_ns <= 0 ? 1 : 0;
     longest_gap_ns = std::max(longest_gap_ns, interval_ns);
     interval_square_sum_s2_ += seconds_of(interval_ns) * seconds_of(interval_ns);
     if (expected_hz > 0) {
-        follow_phase(last_ns + interval_ns, interval_ns);
+        follow_phase(last_ns + interval_ns, interval_ns, is_overtaken);
     } else if (infers && first_intervals_.size() < intervals_to_infer) {
         first_intervals_.push_back(interval_ns);
         if (first_intervals_.size() == intervals_to_infer) {
@@ -70,7 +75,7 @@ void BusStream::infer_period() {
     expected_hz = steady ? 1e9 * close / sum_ns : 0;
 }
 
-void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns) {
+void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns, bool is_overtaken) {
     const double period_ns = 1e9 / expected_hz;
     const auto now_ns = static_cast<double>(stamp_ns);
     const double periods = static_cast<double>(interval_ns) / period_ns;
@@ -92,7 +97,7 @@ void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns) {
     const double due_ns = next_ns_ + skipped * period_ns;
     const bool late_by_a_period = skipped_ && skipped < 0; // the one before was not the next of the sequence
     const bool off = late_by_a_period || std::abs(now_ns - due_ns) > most_off_sequence * period_ns;
-    off_sequence_ += off ? 1 : 0;
+    off_sequence_ += off && !is_overtaken ? 1 : 0;
     in_sequence_ = !off && skipped == 0;
     phase_.take(stamp_ns, due_ns, period_ns);
     skipped_ = skipped > 0;
@@ -120,6 +125,10 @@ double BusStream::jitter_s() const {
 
 std::uint64_t BusStream::missing() const {
     return static_cast<std::uint64_t>(std::max<std::int64_t>(missing_, 0));
+}
+
+std::uint64_t BusStream::other_forms() const noexcept {
+    return count == 0 ? other_forms_ : 2 * replacing_forms_ > other_forms_ ? replacing_forms_ : 0;
 }
 
 std::uint64_t BusStream::additional() const {

@@ -28,18 +28,24 @@ class BusStream {
     std::uint64_t rejected = 0; ///< frames rejected by the device's decoder
     /// frames whose time stamp is not later than that of the previous frame
     std::uint64_t not_increasing = 0;
-    std::uint64_t copies = 0; ///< frames with the content of the one before, less than a period after it
-    double bits = 0;          ///< bits of all frames, with worst-case bit stuffing
-    int length = 0;           ///< bytes of the last frame, or of the expected one
-    bool known = false;       ///< the description names its sender
-    std::string sender;       ///< such as `joint 2`; empty if unknown
-    double expected_hz = 0;   ///< 0: not sent regularly, or unknown
-    bool infers = false;      ///< `expected_hz` is inferred from the first frames
-    double expected_bits = 0; ///< bits per second
-    bool several = false;     ///< more than one frame per period
+    std::uint64_t copies = 0;    ///< frames with the content of the one before, less than a period after it
+    std::uint64_t strays = 0;    ///< frames with a meaningless time stamp, which were not taken
+    std::uint64_t overtaken = 0; ///< frames read after one of any source with a later time stamp
+    double bits = 0;             ///< bits of all frames, with worst-case bit stuffing
+    int length = 0;              ///< bytes of the last frame, or of the expected one
+    bool known = false;          ///< the description names its sender
+    std::string sender;          ///< such as `joint 2`; empty if unknown
+    double expected_hz = 0;      ///< 0: not sent regularly, or unknown
+    bool infers = false;         ///< `expected_hz` is inferred from the first frames
+    double expected_bits = 0;    ///< bits per second
+    bool several = false;        ///< more than one frame per period
+    bool of_sensor = false;
+    bool other_form = false;   ///< of identifiers than the described source with the same number
+    bool answers_sync = false; ///< its device measures at a SYNC
 
-    /// Takes the next frame. `frame_bits`: its worst-case length on the wire.
-    void take(const hal::Frame& frame, double frame_bits);
+    /// Takes the next frame. `frame_bits`: its worst-case length on the wire. `is_overtaken`: a frame with a
+    /// later time stamp was read before it.
+    void take(const hal::Frame& frame, double frame_bits, bool is_overtaken = false);
 
     /// Forgets the phase of the sequence: the clock was set.
     void forget_phase() noexcept;
@@ -55,12 +61,19 @@ class BusStream {
     std::uint64_t additional() const;
     /// Largest number of them at about one time: among some fifty frames.
     double additional_at_once() const noexcept { return largest_recent_; }
-    /// Number of frames that came more than 40 % of a period off the sequence.
+    /// Number of frames that came more than 40 % of a period off the sequence, without overtaken ones.
     std::uint64_t off_sequence() const noexcept { return off_sequence_; }
     /// True if the last frame came in its place of the sequence.
     bool in_sequence() const noexcept { return in_sequence_; }
     /// Lasting changes of the sequence's phase.
     const std::vector<PhaseStep>& phase_steps() const noexcept { return phase_.steps(); }
+    /// Takes a frame with the same number in the other form of identifiers, 11 or 29 bits.
+    void take_other_form() noexcept { ++other_forms_, ++waiting_forms_; }
+    /// Number of such frames, if most of them came where frames of the source were missing. Else they are
+    /// another device's, which may send what it likes.
+    std::uint64_t other_forms() const noexcept;
+    /// Returns true if the description says how often its frames come.
+    bool is_described() const noexcept { return known && expected_hz > 0; }
     SyncAnswers answers; ///< if its frames answer a SYNC
     /// Returns true if the sender keeps the expected period: at least half of the intervals are close to it,
     /// and their mean deviates by at most 5 %.
@@ -68,9 +81,9 @@ class BusStream {
     static constexpr double gap_periods = 10;
 
   private:
-    void take_interval(std::int64_t interval_ns);
+    void take_interval(std::int64_t interval_ns, bool is_overtaken);
     void infer_period();
-    void follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns);
+    void follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns, bool is_overtaken);
 
     double interval_square_sum_s2_ = 0;
     /// first intervals until the period is inferred; at most a few
@@ -85,6 +98,8 @@ class BusStream {
     hal::Frame last_frame_{};
     /// intervals that were followed, and those close to the period
     std::uint64_t followed_ = 0, regular_ = 0;
+    /// frames of the other form: all, those in place of missing frames, and those since the last frame
+    std::uint64_t other_forms_ = 0, replacing_forms_ = 0, waiting_forms_ = 0;
     bool phase_known_ = false;
     double regular_periods_ = 0; ///< sum of the regular intervals in periods
 };

@@ -13,19 +13,27 @@ constexpr int replayed_positions = 10; ///< in a row
 constexpr double tolerance_counts = 3;
 constexpr double near_rad = 0.02;   ///< motion of a joint from one position to the next
 constexpr double same_share = 0.25; ///< of a jump and its return
-constexpr std::int64_t flip_ns = 12'000'000;
-constexpr std::int64_t swap_ns = 10'000'000;
+constexpr double flip_periods = 6;  ///< until a flipped position is back
+constexpr double swap_periods = 5;  ///< between the jumps of two joints
+
+bool within(const PositionJump& jump, const PositionJump& other, double periods) {
+    return 1e-9 * std::abs(static_cast<double>(jump.time_ns - other.time_ns)) <=
+           periods * std::max(jump.period_s, other.period_s);
+}
 
 bool is_near(double one, double other, double count_rad) {
     return std::abs(one - other) <= near_rad + tolerance_counts * count_rad;
 }
 
 /// Number of jumps after the first one until the position is back at once, by flipped bits that follow each
-/// other; 0: it is not.
+/// other; 0: it is not. One turn and back is a joint at rest where its encoder wraps.
 std::size_t flips_after(std::span<const PositionJump> jumps) {
     constexpr std::size_t most_flips = 8;
+    if (jumps[0].one_turn) {
+        return 0;
+    }
     for (std::size_t i = 1; i < std::min(jumps.size(), most_flips); ++i) {
-        if (jumps[i].time_ns - jumps[0].time_ns > flip_ns) {
+        if (!within(jumps[i], jumps[0], flip_periods)) {
             break;
         }
         if (is_near(jumps[i].to_rad, jumps[0].from_rad, jumps[0].count_rad)) {
@@ -49,8 +57,7 @@ bool is_power_of_two(const PositionJump& jump) {
 }
 
 bool swaps(const PositionJump& jump, const PositionJump& other) {
-    return std::abs(jump.time_ns - other.time_ns) <= swap_ns &&
-           is_near(jump.to_rad, other.from_rad, jump.count_rad) &&
+    return within(jump, other, swap_periods) && is_near(jump.to_rad, other.from_rad, jump.count_rad) &&
            is_near(other.to_rad, jump.from_rad, jump.count_rad);
 }
 
@@ -66,7 +73,8 @@ JumpCause cause_of(const PositionJump& jump, const PositionJump* back) {
     if (jump.replays) {
         return JumpCause::frames_replayed;
     }
-    if (back == nullptr && is_near(jump.from_zero_rad, 0, jump.count_rad)) {
+    const bool wraps = jump.one_turn && !jump.after_silence;
+    if (back == nullptr && !wraps && is_near(jump.from_zero_rad, 0, jump.count_rad)) {
         return JumpCause::zero_lost;
     }
     if (jump.turn) {
@@ -75,35 +83,8 @@ JumpCause cause_of(const PositionJump& jump, const PositionJump* back) {
     return back != nullptr && is_power_of_two(jump) ? JumpCause::bit_stuck : JumpCause::unknown;
 }
 
-} // namespace
-
-bool ReplayedPositions::take(double position_rad, bool jumps) {
-    if (jumps) {
-        ages_.clear();
-        for (std::size_t age = 2; age < std::min(count_, kept - 1); ++age) {
-            if (before(age) == position_rad) {
-                ages_.push_back(age);
-            }
-        }
-        equal_ = 1;
-        moves_ = false;
-        first_rad_ = position_rad;
-    } else if (!ages_.empty()) {
-        std::erase_if(ages_, [&](std::size_t age) { return before(age) != position_rad; });
-        moves_ = moves_ || position_rad != first_rad_;
-        ++equal_;
-    }
-    positions_[count_ % kept] = position_rad;
-    ++count_;
-    const bool replays = !ages_.empty() && moves_ && equal_ >= replayed_positions;
-    if (replays) {
-        ages_.clear();
-    }
-    return replays;
-}
-
 /// Jumps of a bit that is stuck have one size; flipped bits make jumps of several sizes.
-static void tell_stuck_from_flipped(const std::vector<PositionJump>& jumps, std::vector<JumpCause>& causes) {
+void separate_stuck_from_flipped(const std::vector<PositionJump>& jumps, std::vector<JumpCause>& causes) {
     constexpr double same_size = 1.6; // ratio of the largest to the least; a joint moves meanwhile
     const auto of_bits = [](JumpCause cause) {
         return cause == JumpCause::bits_flipped || cause == JumpCause::bit_stuck ||
@@ -132,9 +113,22 @@ static void tell_stuck_from_flipped(const std::vector<PositionJump>& jumps, std:
     }
 }
 
+/// Turns and back at once, beside other flipped bits, are flipped bits, too.
+void find_flipped_turns(const std::vector<PositionJump>& jumps, std::vector<JumpCause>& causes) {
+    if (std::ranges::count(causes, JumpCause::bits_flipped) == 0) {
+        return;
+    }
+    for (std::size_t i = 1; i < jumps.size(); ++i) {
+        const bool both = causes[i - 1] == JumpCause::wrap && causes[i] == JumpCause::wrap;
+        if (both && returns(jumps[i - 1], jumps[i]) && within(jumps[i - 1], jumps[i], flip_periods)) {
+            causes[i - 1] = causes[i] = JumpCause::bits_flipped;
+        }
+    }
+}
+
 /// The cause of a joint's jumps, in their order.
-static std::vector<JumpCause> causes_of_joint(const std::vector<PositionJump>& jumps,
-                                              std::span<const std::vector<PositionJump>> joints) {
+std::vector<JumpCause> causes_of_joint(const std::vector<PositionJump>& jumps,
+                                       std::span<const std::vector<PositionJump>> joints) {
     std::vector<JumpCause> causes;
     for (std::size_t i = 0; i < jumps.size(); ++i) {
         if (const std::size_t flips = flips_after(std::span(jumps).subspan(i));
@@ -152,8 +146,36 @@ static std::vector<JumpCause> causes_of_joint(const std::vector<PositionJump>& j
             ++i;
         }
     }
-    tell_stuck_from_flipped(jumps, causes);
+    find_flipped_turns(jumps, causes);
+    separate_stuck_from_flipped(jumps, causes);
     return causes;
+}
+
+} // namespace
+
+bool ReplayedPositions::take(double position_rad, bool jumps) {
+    if (jumps) {
+        ages_.clear();
+        for (std::size_t age = 2; age < std::min(count_, kept - 1); ++age) {
+            if (before(age) == position_rad) {
+                ages_.push_back(age);
+            }
+        }
+        equal_ = 1;
+        moves_ = false;
+        first_rad_ = position_rad;
+    } else if (!ages_.empty()) {
+        std::erase_if(ages_, [&](std::size_t age) { return before(age) != position_rad; });
+        moves_ = moves_ || position_rad != first_rad_;
+        ++equal_;
+    }
+    positions_[count_ % kept] = position_rad;
+    ++count_;
+    const bool replays = !ages_.empty() && moves_ && equal_ >= replayed_positions;
+    if (replays) {
+        ages_.clear();
+    }
+    return replays;
 }
 
 std::vector<std::vector<JumpCause>> causes_of(std::span<const std::vector<PositionJump>> joints) {

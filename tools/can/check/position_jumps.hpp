@@ -16,7 +16,10 @@ struct PositionJump {
     double from_rad = 0, to_rad = 0; ///< where the motion before it led, and where the position was
     double count_rad = 0;            ///< smallest step of the encoder
     double from_zero_rad = 0;        ///< of the position after it, from the device's own zero
+    double period_s = 0;             ///< mean interval between positions before it
     bool turn = false;               ///< whole turns of the encoder
+    bool one_turn = false;           ///< one turn, as where a single-turn encoder wraps
+    bool after_silence = false;      ///< or after a fault or zeros, as of a device that restarts
     bool replays = false;            ///< the positions after it are those of an earlier time
 
     double step_rad() const noexcept { return to_rad - from_rad; }

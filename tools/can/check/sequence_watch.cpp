@@ -2,6 +2,7 @@
 #include "tools/can/check/sequence_watch.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace dfdyn::tools {
 
@@ -44,7 +45,10 @@ void PhaseSteps::take(std::int64_t stamp_ns, double due_ns, double period_ns) {
 void SyncAnswers::take(std::int64_t after_ns, double period_ns) {
     const auto now_ns = static_cast<double>(after_ns);
     if (learned_ < answers_to_learn) {
-        usual_ns_ += now_ns / answers_to_learn;
+        const double phase_rad = 2 * std::numbers::pi * now_ns / period_ns;
+        cosine_sum_ += std::cos(phase_rad);
+        sine_sum_ += std::sin(phase_rad);
+        usual_ns_ = std::atan2(sine_sum_, cosine_sum_) / (2 * std::numbers::pi) * period_ns;
         ++learned_;
         return;
     }

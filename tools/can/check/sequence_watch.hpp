@@ -9,7 +9,7 @@ namespace dfdyn::tools {
 /// A lasting change of the phase of a regular sequence.
 struct PhaseStep {
     std::int64_t time_ns; ///< of the first frame after it
-    double step_ns;       ///< less whole periods
+    double step_ns;       ///< modulo the period
 };
 
 /// Finds lasting changes of the phase of a regular sequence: eight frames in a row that are all off by the
@@ -19,7 +19,7 @@ class PhaseSteps {
     /// Takes a frame that was due at `due_ns`, by a sequence that follows its frames slowly.
     void take(std::int64_t stamp_ns, double due_ns, double period_ns);
 
-    /// The sequence begins anew.
+    /// The sequence is interrupted.
     void interrupt() noexcept { frames_ = 0; }
 
     const std::vector<PhaseStep>& steps() const noexcept { return steps_; }
@@ -43,7 +43,8 @@ class SyncAnswers {
     std::uint64_t late() const noexcept { return late_; }
 
   private:
-    double usual_ns_ = 0; ///< mean of the first answers
+    double usual_ns_ = 0; ///< circular mean of the first answers, because one may come after the next SYNC
+    double cosine_sum_ = 0, sine_sum_ = 0; ///< of their phases
     int learned_ = 0;
     std::uint64_t run_ = 0, late_ = 0;
 };

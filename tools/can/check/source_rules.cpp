@@ -21,6 +21,7 @@ constexpr double enough_frames = 20;
 constexpr double jitter_of_two = 0.25;
 constexpr double least_missing = 0.0005; ///< share of the frames; smaller losses are not reported
 constexpr std::uint64_t least_missing_frames = 3;
+constexpr std::uint64_t least_overtaken = 3; ///< frames; with fewer of them pauses are judged as usual
 constexpr double largest_load_in_time = 0.6; ///< beyond it frames wait for others
 constexpr double least_at_once = 12;         ///< additional frames
 constexpr double least_copies = 0.5;         ///< share of the additional frames
@@ -71,14 +72,14 @@ struct Source {
     bool answers_late() const { return is_described() && many(stream.answers.late()); }
     bool is_late() const {
         return !answers_late() && check.expected_load() <= largest_load_in_time &&
-               check.small_clock_step_ns() == 0 && !is_overtaken(check) && is_described() && keeps_rate() &&
-               !stream.several && stream.is_regular() && !collides() && !duplicated() && !jitters() &&
+               check.small_clock_step_ns() == 0 && is_described() && keeps_rate() && !stream.several &&
+               stream.is_regular() && !collides() && !duplicated() && !jitters() &&
                many(stream.off_sequence());
     }
     /// Of several messages with one identifier twice as many are missing after one pause. Frames with a wrong
     /// stamp are no loss.
     std::uint64_t enough_missing() const {
-        return (stream.several ? 2 : 1) * least_missing_frames + check.clock().strays();
+        return (stream.several ? 2 : 1) * least_missing_frames + stream.strays;
     }
     /// Returns true if frames of a sender that keeps its period are missing. Frames dropped by this computer
     /// are excluded because they are reported elsewhere.
@@ -91,7 +92,7 @@ struct Source {
     /// Returns true if there is a pause that scattered losses do not explain.
     bool has_gaps() const {
         const bool steady = stream.several ? ratio() >= least_rate : stream.is_regular();
-        const bool long_ones = loses() || stream.several || is_overtaken(check);
+        const bool long_ones = loses() || stream.several || stream.overtaken >= least_overtaken;
         return runs() && !collides() && steady &&
                gap_periods() > (long_ones ? BusStream::gap_periods : largest_gap);
     }
@@ -135,7 +136,8 @@ constexpr std::array<Rule, 13> rules{{
      },
      "move the joint, or load the sensor, by hand: the bytes of those frames change (candump -c IFACE)",
      "correct the address in the description, or in the device"},
-    {"silent_source", "is never sent", [](const Source& s) { return s.silent() && impostor(s) == nullptr; },
+    {"silent_source", "is never sent",
+     [](const Source& s) { return s.silent() && s.stream.other_forms() == 0 && impostor(s) == nullptr; },
      [](const Source& s) { return formatted("no frame in %.3g s", s.check.duration_s()); },
      "candump -n 1 IFACE,ID:MASK waits for one frame of it",
      "check the device's power and cable; start its transmission; check its address in the description"},
@@ -194,7 +196,7 @@ constexpr std::array<Rule, 13> rules{{
     {"late_frames", "has frames that come late", [](const Source& s) { return s.is_late(); },
      [](const Source& s) {
          return std::to_string(s.stream.off_sequence()) + " of " + std::to_string(s.stream.count) +
-                formatted(" frames are more than 40 % of %.3g ms off", 1e3 / s.stream.expected_hz);
+                formatted(" frames are more than 40 %% of %.3g ms off", 1e3 / s.stream.expected_hz);
      },
      "the same frames recorded by another computer: if they are in time there, this one's stamps are late",
      "lower the load; a lower identifier; a gateway or program that does not hold frames back"},
@@ -207,10 +209,10 @@ constexpr std::array<Rule, 13> rules{{
      "candump -t d IFACE: the time from 080 to the answer",
      "a longer SYNC period, or a lower load, so that all answers come before the next SYNC"},
     {"rejected_frames", "has frames that its device does not send",
-     [](const Source& s) { return s.stream.rejected > 0; },
+     [](const Source& s) { return s.stream.rejected + s.stream.other_forms() > 0; },
      [](const Source& s) {
-         return std::to_string(s.stream.rejected) + " of " + std::to_string(s.stream.count) +
-                " have another length or kind";
+         return std::to_string(s.stream.rejected + s.stream.other_forms()) + " of " +
+                std::to_string(s.stream.count + s.stream.other_forms()) + " have another length or kind";
      },
      "candump IFACE,ID:MASK shows their length", "correct the device's mapping, or the description's"},
 }};
@@ -224,6 +226,16 @@ std::string with_id(std::string text, const BusStreamKey& key) {
 }
 
 } // namespace
+
+bool sends_more(const BusCheck& check, const BusStreams::value_type& source) {
+    const Source asked{source.first, source.second, check};
+    return asked.collides() || asked.duplicated();
+}
+
+bool is_late_or_lost(const BusCheck& check, const BusStreams::value_type& source) {
+    const Source asked{source.first, source.second, check};
+    return asked.loses() || asked.is_late();
+}
 
 std::vector<BusFinding> source_findings(const BusCheck& check) {
     std::vector<BusFinding> findings;

@@ -12,10 +12,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// ratio to the described rate; above it, values of two senders may alternate
-constexpr double rate_of_one = 1.02;
-constexpr std::uint64_t most_additional = 2; ///< frames beside a sequence
-
 std::string share_text(std::uint64_t count, std::uint64_t of, const char* what) {
     return std::to_string(count) + " of " + std::to_string(of) + " " + what + " (" +
            percent(of > 0 ? static_cast<double>(count) / static_cast<double>(of) : 0) + ")";
@@ -44,6 +40,14 @@ std::string of_efforts(const Joint& joint, std::uint64_t count) {
     return share_text(count, joint.watch.efforts(), "efforts");
 }
 
+/// Number of jumps, of which only the first are known.
+std::string jumps_text(const Joint& joint, std::uint64_t count) {
+    return (joint.watch.has_more_jumps() ? "at least " : "") + std::to_string(count);
+}
+std::string of_jumps(const Joint& joint, std::uint64_t count) {
+    return (joint.watch.has_more_jumps() ? "at least " : "") + of_positions(joint, count);
+}
+
 std::uint64_t caused_by(const Joint& joint, JumpCause cause) {
     return static_cast<std::uint64_t>(std::ranges::count(joint.causes, cause));
 }
@@ -53,53 +57,56 @@ constexpr std::array<JointRule, 12> joint_rules{{
      [](const Joint& joint) { return joint.restarts; },
      [](const Joint&, std::uint64_t count) { return std::to_string(count) + " boot-ups between its values"; },
      "candump IFACE,700:780 shows 00, the boot-up", "check the board's supply; look up its last error"},
-    {"position_wrap", "has an encoder that begins anew after a turn", false,
+    {"position_wrap", "has an encoder that wraps after a turn", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::wrap); },
      [](const Joint& joint, std::uint64_t count) {
-         return of_positions(joint, count) + " are a turn away from the one before";
+         return of_jumps(joint, count) + " are a turn away from the one before";
      },
      "turn the joint by hand past that angle", "let the device count turns, or move its zero; zero_rad"},
     {"position_jump", "has positions that it cannot have reached", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::unknown); },
      [](const Joint& joint, std::uint64_t count) {
-         return of_positions(joint, count) +
+         return of_jumps(joint, count) +
                 formatted(" are far from the one before, by up to %.3g rad", joint.watch.largest_jump_rad());
      },
      "read the angle with the maker's own program before and after",
      "a board that restarts loses its zero; a second sender; a loose encoder cable"},
-    {"zero_lost", "has an encoder that began anew at its zero", false,
+    {"zero_lost", "has an encoder that restarted at its zero", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::zero_lost); },
-     [](const Joint&, std::uint64_t count) {
-         return std::to_string(count) + " times its positions go on from the device's own zero, far from the "
-                                        "one before";
+     [](const Joint& joint, std::uint64_t count) {
+         return jumps_text(joint, count) +
+                " times its positions go on from the device's own zero, far from the "
+                "one before";
      },
      "read the angle with the maker's own program before and after switching the board off and on",
      "check the board's supply; set its zero, or use an absolute encoder; start the program again"},
     {"bits_flipped", "has single positions that are far off", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::bits_flipped); },
-     [](const Joint&, std::uint64_t count) {
-         return std::to_string(count) + " jumps, after each of which the position comes back at once";
+     [](const Joint& joint, std::uint64_t count) {
+         return jumps_text(joint, count) + " jumps, after each of which the position comes back at once";
      },
      "the checksum of CAN finds what happens on the wire: read the device's own value beside its frames",
      "memory of the device or of a gateway; the encoder's cable"},
     {"bit_stuck", "has positions that are one bit off for a time", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::bit_stuck); },
      [](const Joint& joint, std::uint64_t count) {
-         return std::to_string(count) +
+         return jumps_text(joint, count) +
                 formatted(" jumps of one bit, by up to %.3g rad", joint.watch.largest_jump_rad());
      },
      "turn the joint slowly: the same bit never changes (candump -b IFACE)",
      "a line of a parallel encoder; the encoder's memory"},
     {"frames_replayed", "shows positions of an earlier time", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::frames_replayed); },
-     [](const Joint&, std::uint64_t count) {
-         return std::to_string(count) + " jumps to positions that repeat earlier ones, one after the other";
+     [](const Joint& joint, std::uint64_t count) {
+         return jumps_text(joint, count) +
+                " jumps to positions that repeat earlier ones, one after the other";
      },
      "stop all programs that send on this bus, then look again", "stop the program that replays a log here"},
     {"nodes_swapped", "shows the positions of another joint", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::nodes_swapped); },
-     [](const Joint&, std::uint64_t count) {
-         return std::to_string(count) + " jumps to where another joint was, which jumped to this one at once";
+     [](const Joint& joint, std::uint64_t count) {
+         return jumps_text(joint, count) +
+                " jumps to where another joint was, which jumped to this one at once";
      },
      "move the joint by hand: the other joint's bytes change", "the identifiers of the two boards"},
     {"position_zeros", "shows zeros between other positions", false,
@@ -127,11 +134,10 @@ constexpr std::array<JointRule, 12> joint_rules{{
      "a larger unit in the drive's PDO; a slower motion, a smaller load"},
 }};
 
-/// Returns false if values of two senders may alternate.
+/// Returns false if a finding says that values of two senders may alternate.
 bool has_one_sender(const BusCheck& check, int joint) {
-    const BusStream* const stream = check.position_stream(static_cast<std::size_t>(joint));
-    return stream == nullptr || (stream->rate_hz() <= rate_of_one * stream->expected_hz &&
-                                 (stream->several || stream->additional() <= most_additional));
+    const BusStreams::value_type* const stream = check.position_stream(static_cast<std::size_t>(joint));
+    return stream == nullptr || !sends_more(check, *stream);
 }
 
 } // namespace

@@ -16,7 +16,6 @@ constexpr double least_equal_s = 0.1;
 constexpr std::uint64_t least_equal_efforts = 100; ///< consecutive efforts
 constexpr double least_equal_efforts_s = 0.5;
 constexpr double least_motion_rad = 0.02;
-constexpr std::size_t most_jumps = 64;
 constexpr double silence_periods = 3;
 
 } // namespace
@@ -46,10 +45,13 @@ void ValueWatch::take_position(const hal::JointValue& value) {
     stamp_ns_ = comparable ? value.stamp_ns : std::max(stamp_ns_, value.stamp_ns);
     position_rad_ = value.position_rad;
     const bool was_zero = zero_;
-    zero_ =
-        value.raw_zero && (was_zero || after_fault_ ||
-                           (comparable && (jumped(step_ns, step_rad) || restarts(value, step_ns, step_rad))));
+    const bool silent = after_fault_ || is_silence(step_ns);
+    const bool wraps = std::abs(turns_of(step_rad)) == 1;
+    zero_ = value.raw_zero &&
+            (was_zero || after_fault_ ||
+             (comparable && ((jumped(step_ns, step_rad) && !wraps) || restarts(value, step_ns, step_rad))));
     after_fault_ = false;
+    silent_before_zero_ = zero_ && !was_zero ? silent : silent_before_zero_;
     before_zero_rad_ = zero_ && !was_zero ? from_rad : before_zero_rad_;
     if (!comparable || zero_ || was_zero) {
         take_zero(value, was_zero);
@@ -72,19 +74,23 @@ void ValueWatch::take_zero(const hal::JointValue& value, bool was_zero) {
     if (!jumped(value.stamp_ns - stamp_ns_, value.from_zero_rad)) {
         zeros_ -= zeros_in_a_row_;
         count_jump(true, value.position_rad - before_zero_rad_);
-        note_jump(value, before_zero_rad_);
+        note_jump(value, before_zero_rad_, silent_before_zero_);
     }
     zeros_in_a_row_ = 0;
 }
 
-void ValueWatch::note_jump(const hal::JointValue& value, double from_rad) {
+void ValueWatch::note_jump(const hal::JointValue& value, double from_rad, bool after_silence) {
+    const double turns = turns_of(value.position_rad - from_rad);
     if (first_jumps_.size() < most_jumps) {
         first_jumps_.push_back({.time_ns = value.stamp_ns,
                                 .from_rad = from_rad,
                                 .to_rad = value.position_rad,
                                 .count_rad = value.step_rad,
                                 .from_zero_rad = value.from_zero_rad,
-                                .turn = is_turn(value.position_rad - from_rad)});
+                                .period_s = mean_interval_s(),
+                                .turn = turns != 0,
+                                .one_turn = std::abs(turns) == 1,
+                                .after_silence = after_silence});
     }
 }
 
@@ -120,7 +126,8 @@ void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, d
     const bool thaws = is_long() && far && std::abs(step_rad) / step_s > limits_.acceleration * step_s;
     const bool jump = !thaws && (jumped(step_ns, step_rad) || restarts(value, step_ns, step_rad));
     if (jump) {
-        note_jump(value, value.position_rad - step_rad + last_speed_rad_per_s_ * mean_interval_s());
+        note_jump(value, value.position_rad - step_rad + last_speed_rad_per_s_ * mean_interval_s(),
+                  is_silence(step_ns));
     }
     if (replayed_.take(value.position_rad, jump) && !first_jumps_.empty()) {
         first_jumps_.back().replays = true;
@@ -149,10 +156,10 @@ void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, d
     equal_ = 0;
 }
 
-/// Returns true for whole turns of the encoder.
-bool ValueWatch::is_turn(double step_rad) const {
-    const double turns = turn_rad_ > 0 ? step_rad / turn_rad_ : 0.5;
-    return std::abs(turns - std::round(turns)) < 0.05 && std::abs(turns) > 0.5;
+/// Number of whole turns of the encoder; 0 for steps that are not whole turns.
+double ValueWatch::turns_of(double step_rad) const {
+    const double turns = turn_rad_ > 0 ? step_rad / turn_rad_ : 0;
+    return std::abs(turns - std::round(turns)) < 0.05 ? std::round(turns) : 0;
 }
 
 void ValueWatch::count_jump(bool jump, double step_rad) {

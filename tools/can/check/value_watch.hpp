@@ -28,6 +28,8 @@ class ValueWatch {
     double largest_jump_rad() const noexcept { return largest_jump_rad_; }
     /// The first of these steps, and positions after a silence that begin at the device's zero.
     const std::vector<PositionJump>& first_jumps() const noexcept { return first_jumps_; }
+    /// True if there may be more of them than `first_jumps`.
+    bool has_more_jumps() const noexcept { return first_jumps_.size() == most_jumps; }
     /// True if the last position was exactly 0 counts.
     bool at_zero() const noexcept { return at_zero_; }
     /// Number of positions of exactly 0 counts that are far from the preceding positions.
@@ -40,12 +42,14 @@ class ValueWatch {
     std::uint64_t saturated_efforts() const noexcept { return saturated_efforts_; }
 
   private:
+    static constexpr std::size_t most_jumps = 64;
+
     void take_position(const hal::JointValue& value);
     void take_zero(const hal::JointValue& value, bool was_zero);
     void take_step(const hal::JointValue& value, std::int64_t step_ns, double step_rad);
     bool restarts(const hal::JointValue& value, std::int64_t step_ns, double step_rad) const;
-    bool is_turn(double step_rad) const;
-    void note_jump(const hal::JointValue& value, double from_rad);
+    double turns_of(double step_rad) const;
+    void note_jump(const hal::JointValue& value, double from_rad, bool after_silence);
     bool is_silence(std::int64_t step_ns) const;
     void follow_interval(std::int64_t step_ns);
     double mean_interval_s() const noexcept { return 1e-9 * mean_interval_ns_; }
@@ -63,7 +67,8 @@ class ValueWatch {
     double largest_jump_rad_ = 0;
     std::vector<PositionJump> first_jumps_; ///< at most `most_jumps`
     ReplayedPositions replayed_;
-    double before_zero_rad_ = 0; ///< last position before a zero of `zeros_`
+    double before_zero_rad_ = 0;      ///< last position before a zero of `zeros_`
+    bool silent_before_zero_ = false; ///< a silence or a fault came between
     std::uint64_t zeros_in_a_row_ = 0;
 
     bool started_ = false;

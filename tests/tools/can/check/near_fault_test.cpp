@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// What resembles a fault of another kind, or none, is not reported as one.
+#include "tests/tools/can/bus_check_support.hpp"
+#include "tests/tools/can/example_arms.hpp"
+#include "tools/can/check/position_jumps.hpp"
+#include "tools/can/check/sequence_watch.hpp"
+
+#include <numbers>
+
+namespace bus_check_near_fault_test {
+
+using namespace dfdyn::tests;
+using Catch::Matchers::ContainsSubstring;
+namespace hal = dfdyn::hal;
+
+/// Drives that measure at a SYNC, and a sensor that does not.
+BusDescription drives_with_sensor() {
+    const auto& joints = dfdyn::tools::joint_families();
+    const auto& sensors = dfdyn::tools::sensor_families();
+    const auto drive = std::ranges::find(joints, "cia402", &dfdyn::tools::JointFamily::name);
+    const auto sensor = std::ranges::find(sensors, "ati_netcan", &dfdyn::tools::SensorFamily::name);
+    return example_arm(*drive, sensor->example);
+}
+
+std::string evidence(const BusCheck& check, const std::string& rule) {
+    for (const dfdyn::tools::BusFinding& finding : bus_findings(check)) {
+        if (finding.rule == rule) {
+            return finding.evidence;
+        }
+    }
+    return "";
+}
+
+TEST_CASE("buscheck gives a sensor with its own clock no finding on a bus with a SYNC") {
+    const BusDescription bus = drives_with_sensor();
+    const BusCheck check(bus);
+    CHECK(rules(bus, changed(sound(bus), [&](Frame& frame) {
+                    const auto stream = check.streams().find({frame.extended, frame.id});
+                    if (stream != check.streams().end() && stream->second.sender == "sensor") {
+                        frame.stamp_ns += frame.stamp_ns / 2000; // 500 ppm: a period in 4 s
+                    }
+                })) == Names{});
+}
+
+TEST_CASE("buscheck takes no answers for late that come just before and just after a SYNC") {
+    dfdyn::tools::SyncAnswers answers;
+    for (int i = 0; i < 200; ++i) {
+        answers.take(i % 2 == 0 ? 100'000 : 1'900'000, 2e6);
+    }
+    CHECK(answers.late() == 0);
+    for (int i = 0; i < 20; ++i) {
+        answers.take(900'000, 2e6);
+    }
+    CHECK(answers.late() == 20);
+}
+
+TEST_CASE("buscheck prints the figures of frames that come late") {
+    const BusDescription bus = described(foc_and_robotous);
+    int count = 0;
+    const BusCheck check = checked(bus, changed(sound(bus), [&](Frame& frame) {
+                                       frame.stamp_ns +=
+                                           frame.id == 0x110 && ++count % 100 == 0 ? 1'000'000 : 0;
+                                   }));
+    CHECK_THAT(evidence(check, "late_frames"), ContainsSubstring("more than 40 % of 2 ms off"));
+}
+
+/// Positions of joint 1 of `drives`, in counts, as `counts` returns them for a time in s.
+Frames with_positions(const Frames& frames, const std::function<std::int32_t(double, std::int32_t)>& counts) {
+    return changed(frames, [&](Frame& frame) {
+        if (frame.id == 0x281) {
+            const auto now = hal::load_little<std::int32_t>(frame.data.data());
+            hal::store_little(frame.data.data(), counts(1e-9 * static_cast<double>(frame.stamp_ns), now));
+        }
+    });
+}
+
+constexpr std::int32_t turn_counts = 1'048'576; ///< of the encoders of `drives`
+
+TEST_CASE("buscheck reports a frozen encoder although a few frames come twice") {
+    const BusDescription bus = drives_with_sensor();
+    std::optional<std::int32_t> last;
+    Frames frames = with_positions(sound(bus, 14), [&](double time_s, std::int32_t now) {
+        return time_s > 0.2 && time_s < 1.8 ? *(last = last.value_or(now)) : now;
+    });
+    const auto copy = [&](std::size_t after) {
+        const auto found =
+            std::find_if(frames.begin() + static_cast<std::ptrdiff_t>(after * frames.size() / 4),
+                         frames.end(), [](const Frame& frame) { return frame.id == 0x281; });
+        Frame again = *found;
+        again.stamp_ns += 100'000;
+        frames.push_back(again);
+        std::ranges::stable_sort(frames, {}, &Frame::stamp_ns);
+    };
+    copy(1), copy(2), copy(3);
+    CHECK(rules(bus, frames) == Names{"encoder_frozen"});
+}
+
+TEST_CASE("buscheck tells an unsigned encoder that wraps from one that lost its zero") {
+    const BusDescription bus = drives();
+    const auto wrapping = [](double time_s, std::int32_t) {
+        return static_cast<std::int32_t>(-40'000 + std::llround(20'000 * time_s) + turn_counts) % turn_counts;
+    };
+    CHECK(rules(bus, with_positions(sound(bus), wrapping)) == Names{"position_wrap"});
+}
+
+TEST_CASE("buscheck tells a joint at rest where its encoder wraps from one with flipped bits") {
+    const BusDescription bus = drives();
+    DFDYN_SEEDED_ENGINE(engine);
+    std::normal_distribution<double> noise(0, 30);
+    const BusCheck check = checked(bus, with_positions(sound(bus, 8), [&](double, std::int32_t) {
+                                       const auto counts = static_cast<std::int32_t>(noise(engine));
+                                       return (counts + turn_counts) % turn_counts;
+                                   }));
+    CHECK(rules_of(check) == Names{"position_wrap"});
+    CHECK_THAT(evidence(check, "position_wrap"), ContainsSubstring("at least 64 of "));
+}
+
+TEST_CASE("buscheck takes a foreign device with 29-bit identifiers for no part of the arm") {
+    const BusDescription bus = drives();
+    Frames frames = sound(bus);
+    const std::size_t count = frames.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (frames[i].id == 0x281) {
+            frames.push_back(hal::make_frame(0x281, 4));
+            frames.back().extended = true;
+            frames.back().stamp_ns = frames[i].stamp_ns + 700'000;
+        }
+    }
+    CHECK(rules(bus, changed(frames, [](Frame&) {})) == Names{});
+    const Frames instead = changed(sound(bus), [](Frame& frame) { frame.extended = frame.id == 0x281; });
+    CHECK(rules(bus, instead) == Names{"rejected_frames"});
+    int number = 0;
+    CHECK(rules(bus, changed(sound(bus), [&](Frame& frame) {
+                    frame.extended = frame.id == 0x281 && ++number % 100 == 0;
+                })) == Names{"lost_frames", "rejected_frames"});
+}
+
+TEST_CASE("buscheck finds lost frames of a joint although another source has wrong time stamps") {
+    const BusDescription bus = drives_with_sensor();
+    const Frames good = sound(bus);
+    int lost = 0, strays = 0;
+    Frames frames = without(good, [&](const Frame& frame) { return frame.id == 0x281 && ++lost % 100 == 0; });
+    for (Frame& frame : frames) {
+        if (frame.id == 0x282 && ++strays % 30 == 0) {
+            frame.stamp_ns -= 3'600'000'000'000;
+        }
+    }
+    CHECK(rules(bus, frames) == Names{"lost_frames", "clock_jumped"});
+}
+
+TEST_CASE("buscheck finds late frames of a joint although other frames were read in another order") {
+    const BusDescription bus = described(foc_and_robotous);
+    int late = 0;
+    Frames frames = changed(sound(bus), [&](Frame& frame) {
+        frame.stamp_ns += frame.id == 0x110 && ++late % 100 == 0 ? 1'000'000 : 0;
+    });
+    for (const std::size_t quarter : {1U, 2U, 3U}) {
+        std::size_t at = quarter * frames.size() / 4;
+        while (frames[at].id == 0x110 || frames[at + 1].id == 0x110 || frames[at].id == frames[at + 1].id) {
+            ++at;
+        }
+        std::swap(frames[at], frames[at + 1]);
+    }
+    CHECK(rules(bus, frames) == Names{"frames_overtaken", "late_frames"});
+}
+
+} // namespace bus_check_near_fault_test
