@@ -195,7 +195,8 @@ struct Drawn {
     double share() const { return draws > 0 ? static_cast<double>(right) / draws : 0; }
 };
 
-/// Least share of right draws. The clock may be set by too little to be seen.
+/// Least share of right draws. The clock may be set by nearly whole periods, which cannot be seen, of the
+/// joints or of a sensor with another period: arms with one do not count for that fault.
 double least_share(const Fault& fault) { return fault.apply == clock_slightly ? 0.5 : 0.9; }
 
 /// The findings of a fault. Bits of it may be too small to be seen: they are drawn again.
@@ -240,8 +241,10 @@ void check_legend(const std::vector<BusDescription>& arms) {
             const bool may_be_unseen = drawn.draws == 0 || fault.apply == clock_slightly;
             CHECK((drawn.right > 0 || may_be_unseen)); // no draws: these devices cannot have it
             pairs += drawn.draws > 0 ? 1 : 0;
-            sums[fault.number].draws += drawn.draws;
-            sums[fault.number].right += drawn.right;
+            if (fault.apply != clock_slightly || !description.sensor) {
+                sums[fault.number].draws += drawn.draws;
+                sums[fault.number].right += drawn.right;
+            }
         }
     }
     for (const Fault& fault : campaign_faults()) {
