@@ -23,7 +23,7 @@ ParsedNumber parse_number(std::string_view text) noexcept;
 std::string number_text(double value);
 
 /// Returns `value` formatted by printf with `format`, up to 63 characters.
-std::string formatted(const char* format, double value);
+[[gnu::format(printf, 1, 0)]] std::string formatted(const char* format, double value);
 
 /// Formats with three significant digits: `0.0123`, `8.02`, `1.2e+04`.
 std::string rounded_text(double value);
