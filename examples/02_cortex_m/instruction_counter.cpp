@@ -23,10 +23,7 @@ std::uint64_t elapsed_ticks;
 } // namespace
 
 void start_instruction_counter() {
-    systick().control = 0;
-    systick().reload = SysTick::longest;
-    systick().value = 0; // any written value restarts the timer from `reload`
-    systick().control = SysTick::enabled | SysTick::core_clock;
+    start_systick(SysTick::longest);
     elapsed_ticks = 0;
     last_value = systick().value;
 }

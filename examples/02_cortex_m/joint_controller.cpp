@@ -43,9 +43,7 @@ extern "C" void systick_handler() {
 }
 
 int application() {
-    systick().reload = core_clock_hz / timer_hz - 1;
-    systick().value = 0;
-    systick().control = SysTick::enabled | SysTick::interrupts | SysTick::core_clock;
+    start_systick(core_clock_hz / timer_hz - 1, SysTick::interrupts);
     while (!ended) {
         asm volatile("wfi" ::: "memory");
     }

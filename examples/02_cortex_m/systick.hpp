@@ -15,6 +15,14 @@ struct SysTick {
 
 inline volatile SysTick& systick() { return *reinterpret_cast<volatile SysTick*>(0xE000E010); }
 
+/// Restarts the timer from `reload`, with `flags` (`SysTick::interrupts`) in addition.
+inline void start_systick(std::uint32_t reload, std::uint32_t flags = 0) {
+    systick().control = 0;
+    systick().reload = reload;
+    systick().value = 0; // any written value restarts the timer from `reload`
+    systick().control = SysTick::enabled | SysTick::core_clock | flags;
+}
+
 #if defined(__ARM_ARCH_8M_MAIN__) || defined(__ARM_ARCH_8_1M_MAIN__)
 inline constexpr std::uint32_t core_clock_hz = 32'000'000; // MPS3 AN547
 #else
