@@ -93,13 +93,18 @@ TEST_CASE("after a memory without samples the weights follow the noise until the
     CHECK(combined.weights()[2] > 0.99);
 }
 
+/// One sample: the first member is best one step ahead, the second one in predictions ahead.
+void learn_tracking(Combination<double>& combined) {
+    constexpr std::array<double, outputs> measured{};
+    constexpr Values<double> one_step{0.1, 0.1, 0.3, 0.3, 5, 5};
+    constexpr Values<double> ahead{2, 2, 0.3, 0.3, 5, 5};
+    combined.learn(one_step.data(), ahead.data(), measured.data());
+}
+
 TEST_CASE("a member that only tracks has less weight in predictions ahead and when learning stops") {
     Combination<double> combined = scaled_combination<double>(50);
-    const std::array<double, outputs> measured{};
-    const Values<double> one_step{0.1, 0.1, 0.3, 0.3, 5, 5};
-    const Values<double> ahead{2, 2, 0.3, 0.3, 5, 5};
     for (int t = 0; t < 500; ++t) {
-        combined.learn(one_step.data(), ahead.data(), measured.data());
+        learn_tracking(combined);
     }
     CHECK(combined.weights()[0] > 0.98);
     Values<double> of_ahead{};
@@ -111,17 +116,14 @@ TEST_CASE("a member that only tracks has less weight in predictions ahead and wh
     }
     combined.weigh(noise<double>.data());
     CHECK(combined.weights()[2] > 0.99);
-    combined.learn(one_step.data(), ahead.data(), measured.data());
+    learn_tracking(combined);
     CHECK(combined.weights()[0] > 0.9);
 }
 
 TEST_CASE("a single refused sample changes the combined prediction by little") {
     Combination<double> combined = scaled_combination<double>(50);
-    const std::array<double, outputs> measured{};
-    const Values<double> one_step{0.1, 0.1, 0.3, 0.3, 5, 5};
-    const Values<double> ahead{2, 2, 0.3, 0.3, 5, 5};
     for (int t = 0; t < 500; ++t) {
-        combined.learn(one_step.data(), ahead.data(), measured.data());
+        learn_tracking(combined);
     }
     const auto predicted = [&] {
         std::array<double, outputs> to{};
@@ -133,7 +135,7 @@ TEST_CASE("a single refused sample changes the combined prediction by little") {
     combined.skip();
     CHECK(predicted()[0] == Approx(before[0]).margin(0.02));
     CHECK(predicted()[1] == Approx(before[1]).margin(0.02));
-    combined.learn(one_step.data(), ahead.data(), measured.data());
+    learn_tracking(combined);
     CHECK(predicted()[0] == Approx(before[0]).margin(0.02));
 }
 

@@ -188,6 +188,7 @@ class FeedForward {
 
     /// Returns the share of the learned forecast in each joint's torque, 0 … 1.
     [[nodiscard]] const Torques& share() const noexcept { return share_; }
+
     /// Combines other forecasts (`forecast_count()` times n values, one forecast after the other) into n
     /// learned torques, as the present command combines its own: for example forecasts of the arm at rest,
     /// to hold it after a stop.
@@ -199,6 +200,7 @@ class FeedForward {
             }
         }
     }
+
     /// Returns the learned part of the present torque, N·m.
     [[nodiscard]] const Torques& learned_part() const noexcept { return part_; }
     /// Returns the learner, for its counters and snapshots.
