@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr const char* unit_schema = "dfdyn.evaluated-unit/2";
+constexpr const char* job_schema = "dfdyn.evaluated-unit/2";
 
 ordered_json case_json(const Case& one) {
     return {{"name", one.name},
@@ -90,7 +90,7 @@ ordered_json job_inputs(const Plan& plan, const PlanData& data, const Case& one,
 
 JobResult write_job(const std::filesystem::path& path, const ordered_json& inputs, const JobResult& result) {
     make_folder(path.parent_path());
-    const ordered_json json{{"schema", unit_schema}, {"inputs", inputs}, {"result", job_to_json(result)}};
+    const ordered_json json{{"schema", job_schema}, {"inputs", inputs}, {"result", job_to_json(result)}};
     write_file(path, json.dump() + "\n");
     return unit_from_json(json.at("result"));
 }
@@ -99,7 +99,7 @@ std::optional<JobResult> read_job(const std::filesystem::path& path, const order
     std::ifstream file(path, std::ios::binary);
     const ordered_json json = ordered_json::parse(file, nullptr, false);
     try {
-        if (json.at("schema") != unit_schema || json.at("inputs") != inputs) {
+        if (json.at("schema") != job_schema || json.at("inputs") != inputs) {
             return std::nullopt;
         }
         return unit_from_json(json.at("result"));
