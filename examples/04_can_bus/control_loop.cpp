@@ -91,8 +91,7 @@ Mailbox mailbox;
 Assembly assembly({.board = {drive(0), drive(1), drive(2), drive(3), drive(4), drive(5)},
                    .position = track,
                    .position_range = six(Range{-7, 7}),
-                   .clock = {.tolerance_ns = 2 * sample_period_ns},
-                   .output_bus = 0},
+                   .clock = {.tolerance_ns = 2 * sample_period_ns}},
                   Currents({.track = track, .range = six(Range{-20, 20})}));
 Estimator estimator(ur5_model::constants);
 constexpr dfdyn::Budget budget{Estimator::cost().learn / 2};

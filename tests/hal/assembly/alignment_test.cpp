@@ -30,14 +30,13 @@ double seconds(std::int64_t time_ns) { return 1e-9 * static_cast<double>(time_ns
 constexpr StartupGate::Config at_once{.readings = 1, .zero_readings = 1};
 constexpr std::int64_t force_latency_ns = 1200 * us;
 
-Arm make_arm(int output_bus) {
+Arm make_arm() {
     const Range wide{-1000, 1000};
     const Arm::Config config{.board = {OdriveAxis({.node = 1, .joint = 0, .heartbeat_timeout_ns = 0}),
                                        OdriveAxis({.node = 2, .joint = 1, .heartbeat_timeout_ns = 0})},
                              .position = {.max_age_ns = 3 * ms, .latency_ns = 0, .qualification = at_once},
                              .position_range = {Range{-3, 3}, Range{-3, 3}},
-                             .clock = {},
-                             .output_bus = output_bus};
+                             .clock = {}};
     return {config,
             {RobotousRft({.first_id = 0xF9, .second_id = 0xFA}),
              {.track = {.max_age_ns = 3 * ms, .latency_ns = force_latency_ns, .qualification = at_once},
@@ -74,64 +73,35 @@ std::vector<Frame> traffic(std::int64_t end_ns, std::mt19937_64& engine) {
 
 TEST_CASE("a timer's samples are steady and true, whatever the phases, rates and latencies") {
     DFDYN_SEEDED_ENGINE(engine);
-    for (const int output_bus : {0, 1}) {
-        Arm arm = make_arm(output_bus);
-        const std::vector<Frame> frames = traffic(1000 * ms, engine);
-        std::size_t next = 0;
-        int outputs = 0;
-        for (std::int64_t now = 10 * ms; now < 1000 * ms; now += ms) {
-            for (; next < frames.size() && frames[next].stamp_ns <= now; ++next) {
-                const bool wrench = frames[next].id == 0xF9 || frames[next].id == 0xFA;
-                arm.take(frames[next], now, wrench ? output_bus : 0);
-            }
-            const std::int64_t instant = now - force_latency_ns - 1300 * us;
-            const auto [sample, report] = arm.assemble(instant, now);
-            REQUIRE(report.position == Reason::ok);
-            REQUIRE(sample.time_ns == instant);
-            // Between points 1 ms apart a chord of 3 rad/s, 9 rad/s² misses by a few µrad; the force by a
-            // step too.
-            REQUIRE(difference(sample.position[0], angle(seconds(instant))) < 3e-6);
-            REQUIRE(difference(sample.position[1], angle(seconds(instant))) < 3e-6);
-            if (sample.output_valid) {
-                ++outputs;
-                REQUIRE(difference(sample.output[0], force(seconds(instant))) < 0.011);
-            } else {
-                REQUIRE(report.output ==
-                        Reason::output_not_new); // the sensor is a little slower than the timer
-            }
+    Arm arm = make_arm();
+    const std::vector<Frame> frames = traffic(1000 * ms, engine);
+    std::size_t next = 0;
+    int outputs = 0;
+    for (std::int64_t now = 10 * ms; now < 1000 * ms; now += ms) {
+        for (; next < frames.size() && frames[next].stamp_ns <= now; ++next) {
+            arm.take(frames[next], now);
         }
-        CHECK(outputs > 950);
-        CHECK(outputs < 970); // 990 ms / 1.03 ms
+        const std::int64_t instant = now - force_latency_ns - 1300 * us;
+        const auto [sample, report] = arm.assemble(instant, now);
+        REQUIRE(report.position == Reason::ok);
+        REQUIRE(sample.time_ns == instant);
+        // Between points 1 ms apart a chord of 3 rad/s, 9 rad/s² misses by a few µrad; the force by a
+        // step too.
+        REQUIRE(difference(sample.position[0], angle(seconds(instant))) < 3e-6);
+        REQUIRE(difference(sample.position[1], angle(seconds(instant))) < 3e-6);
+        if (sample.output_valid) {
+            ++outputs;
+            REQUIRE(difference(sample.output[0], force(seconds(instant))) < 0.011);
+        } else {
+            REQUIRE(report.output == Reason::output_not_new); // the sensor is a little slower than the timer
+        }
     }
-}
-
-TEST_CASE("on its own bus a sensor's faults are its own") {
-    DFDYN_SEEDED_ENGINE(engine);
-    Arm arm = make_arm(1);
-    arm.update(BusState::active, {}, 0);
-    arm.update(BusState::active, {}, 1);
-    for (const Frame& frame : traffic(20 * ms, engine)) {
-        arm.take(frame, frame.stamp_ns, frame.id >= 0xF9 && frame.id <= 0xFA ? 1 : 0);
-    }
-    arm.update(BusState::off, {}, 1);
-    const auto blind = arm.assemble(15 * ms, 20 * ms);
-    CHECK(blind.report.position == Reason::ok);
-    CHECK(blind.report.output == Reason::bus_off);
-    BusCounters lost;
-    lost.dropped = 1;
-    arm.update(BusState::active, lost, 1);
-    CHECK(arm.assemble(16 * ms, 20 * ms).report.output == Reason::frames_lost);
-    arm.update(BusState::active, lost, 0);
-    CHECK(arm.assemble(17 * ms, 20 * ms).report.output == Reason::ok);
-    arm.update(BusState::off, {}, 0);
-    CHECK(arm.assemble(18 * ms, 20 * ms).report.position == Reason::bus_off);
-    // A frame of the sensor on the joints' bus is nobody's.
-    arm.take(at_time(frame_of(0xF9, {0x0B, 0, 0, 0, 0, 0, 0, 0}), 21 * ms), 21 * ms, 0);
-    CHECK(arm.bus(0).unknown.count() == 1);
+    CHECK(outputs > 950);
+    CHECK(outputs < 970); // 990 ms / 1.03 ms
 }
 
 TEST_CASE("nothing was heard yet, and nothing is pretended") {
-    Arm arm = make_arm(0);
+    Arm arm = make_arm();
     const auto [sample, report] = arm.assemble(0, 0);
     CHECK(report.position == Reason::waiting_for_position);
     CHECK(report.joint == 0);
@@ -149,7 +119,6 @@ TEST_CASE("an arm whose joints measure their currents has one output per joint")
                     .position = track,
                     .position_range = {Range{-3, 3}, Range{-3, 3}},
                     .clock = {},
-                    .output_bus = 0,
                     .limits = {MotionLimits{500, 1e6}, MotionLimits{500, 1e6}}},
                    EffortOutput<2, 8>({.track = track, .range = {Range{-10, 10}, Range{-5, 5}}}));
     const auto send = [&](std::size_t board, double position_rad, double current_A, std::int64_t stamp) {

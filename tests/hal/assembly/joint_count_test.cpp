@@ -32,7 +32,6 @@ Arm<n> make_arm(dfdyn::Extent<n> joints) {
                                    .position = track,
                                    .position_range = {},
                                    .clock = {},
-                                   .output_bus = 0,
                                    .limits = {},
                                    .joints = joints};
     config.position_range.fill({-10, 10});

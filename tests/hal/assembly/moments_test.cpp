@@ -26,7 +26,6 @@ Arm make_drives() {
              .position = track,
              .position_range = {Range{-10, 10}, Range{-10, 10}},
              .clock = {},
-             .output_bus = 0,
              .limits = {MotionLimits{30, 100}, MotionLimits{30, 100}}},
             EffortOutput<2, 8>({.track = track, .range = {Range{-30, 30}, Range{-30, 30}}})};
 }
@@ -63,7 +62,7 @@ TEST_CASE("at a SYNC the values measured at the one before are complete, and exa
             }
         }
     }
-    CHECK(arm.bus(0).unknown.count() == 0); // the SYNC is no stranger
+    CHECK(arm.bus().unknown.count() == 0); // the SYNC is no stranger
     CHECK_FALSE(arm.colliding_id().has_value());
 }
 

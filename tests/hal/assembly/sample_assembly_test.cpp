@@ -21,8 +21,8 @@ TEST_CASE("an arm on a bus is learned from, tick by tick, once it has qualified"
     CHECK(counters.calls == 511 + ArmOnBus::lags);
     CHECK(counters.samples == counters.outputs);
     CHECK(counters.positions_refused[static_cast<int>(hal::Reason::qualifying)] == 9);
-    CHECK(arm.assembly.bus(0).unknown.count() == 0);
-    CHECK(arm.assembly.bus(0).rejected.count() == 0);
+    CHECK(arm.assembly.bus().unknown.count() == 0);
+    CHECK(arm.assembly.bus().rejected.count() == 0);
     CHECK_FALSE(arm.assembly.colliding_id().has_value());
 }
 

@@ -43,11 +43,7 @@ constexpr WrenchOutput<Sensor, 8> wrench_of(const Sensor& sensor) {
 template <class Board, std::size_t boards, class Output>
 auto arm_of(const std::array<Board, boards>& board, const Output& output) {
     using Arm = SampleAssembly<float, 2, Board, static_cast<int>(boards), Output, 8>;
-    return Arm({.board = board,
-                .position = track,
-                .position_range = {joint_range, joint_range},
-                .clock = {},
-                .output_bus = 0},
+    return Arm({.board = board, .position = track, .position_range = {joint_range, joint_range}, .clock = {}},
                output);
 }
 

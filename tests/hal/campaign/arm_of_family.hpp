@@ -133,7 +133,6 @@ CampaignArm arm_with_output(const std::string& name, const Output& output) {
                                  .position = campaign_track(),
                                  .position_range = {range, range},
                                  .clock = {},
-                                 .output_bus = 0,
                                  .limits = {limits, limits}},
                                 output);
         return std::make_unique<ReceivingAssembly<Assembly>>(trigger, assembly);

@@ -258,8 +258,7 @@ Arm arm() {
     return Arm({.board = {DamiaoMotor(first), DamiaoMotor(second)},
                 .position = track,
                 .position_range = {Range{-3, 3}, Range{-3, 3}},
-                .clock = {},
-                .output_bus = 0},
+                .clock = {}},
                EffortOutput<2, 16>({.track = track, .range = {Range{-10, 10}, Range{-10, 10}}}));
 }
 

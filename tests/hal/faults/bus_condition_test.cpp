@@ -37,8 +37,8 @@ TEST_CASE("error frames are not decoded as data whatever their bits") {
                  })
                   .good());
     }
-    CHECK(arm.assembly.bus(0).unknown.count() == 0);
-    CHECK(arm.assembly.bus(0).rejected.count() == 0);
+    CHECK(arm.assembly.bus().unknown.count() == 0);
+    CHECK(arm.assembly.bus().rejected.count() == 0);
 }
 
 TEST_CASE("fault 25: a bus-off controller gives no samples until it restarts") {
@@ -73,11 +73,11 @@ TEST_CASE("an error-passive controller is reported and its data are learned") {
     for (const BusState state : {BusState::warning, BusState::passive}) {
         arm.bus.bus_state = state;
         CHECK(arm.run(20));
-        CHECK(arm.assembly.bus(0).health.degraded());
+        CHECK(arm.assembly.bus().health.degraded());
     }
     arm.bus.bus_state = BusState::active;
     CHECK(arm.run(1));
-    CHECK_FALSE(arm.assembly.bus(0).health.degraded());
+    CHECK_FALSE(arm.assembly.bus().health.degraded());
 }
 
 TEST_CASE("lost arbitration is not a fault") {

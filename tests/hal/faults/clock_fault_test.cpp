@@ -31,8 +31,8 @@ TEST_CASE("fault 20: frames with an outlier as time stamp are rejected") {
         CHECK(arm.ticks_to_recover() <= 2);
         CHECK(arm.run(10));
     }
-    CHECK(arm.assembly.bus(0).clock.refused() == 9);
-    CHECK(arm.assembly.bus(0).clock.adopted() == 0);
+    CHECK(arm.assembly.bus().clock.refused() == 9);
+    CHECK(arm.assembly.bus().clock.adopted() == 0);
 }
 
 TEST_CASE("faults 22 and 23: a clock that was set is rejected at first and then adopted and counted") {
@@ -47,8 +47,8 @@ TEST_CASE("faults 22 and 23: a clock that was set is rejected at first and then 
             doubtful += arm.tick(shifted_by(jump)).position() == Reason::clock_jumped ? 1 : 0;
         }
         CHECK(doubtful >= 2); // between the held positions and the adoption of the clock
-        CHECK(arm.assembly.bus(0).clock.adopted() == 1);
-        CHECK(arm.assembly.bus(0).clock.refused() == 20);
+        CHECK(arm.assembly.bus().clock.adopted() == 1);
+        CHECK(arm.assembly.bus().clock.refused() == 20);
         CHECK(arm.tick(shifted_by(jump)).good());
     }
 }

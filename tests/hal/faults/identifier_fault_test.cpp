@@ -21,19 +21,19 @@ TEST_CASE("fault 29: frames with a wrong type or length are rejected and named")
         const auto wrong =
             arm.tick([&](Frames& frames) { frames[joint_frame].length = static_cast<std::uint8_t>(length); });
         CHECK(wrong.predicted); // the last position is held
-        CHECK(arm.assembly.bus(0).rejected.count() == ++rejected);
+        CHECK(arm.assembly.bus().rejected.count() == ++rejected);
         CHECK(arm.run(10));
     }
-    CHECK(arm.assembly.bus(0).rejected.first().id == 0x111);
-    CHECK(arm.assembly.bus(0).rejected.first().length == 0);
-    CHECK(arm.assembly.bus(0).rejected.first().reason == Reason::wrong_length);
+    CHECK(arm.assembly.bus().rejected.first().id == 0x111);
+    CHECK(arm.assembly.bus().rejected.first().length == 0);
+    CHECK(arm.assembly.bus().rejected.first().reason == Reason::wrong_length);
     const auto padded = arm.tick([](Frames& frames) { frames[force_frame].length = 8; });
     CHECK_FALSE(padded.learned);
     CHECK(arm.ticks_to_recover() <= 2);
     const auto flexible = arm.tick([](Frames& frames) { frames[torque_frame].fd = true; });
     CHECK_FALSE(flexible.learned);
     CHECK(arm.ticks_to_recover() <= 2);
-    CHECK(arm.assembly.bus(0).rejected.count() == 5);
+    CHECK(arm.assembly.bus().rejected.count() == 5);
 }
 
 TEST_CASE("our own frames that come back are not decoded as the devices' frames") {
@@ -50,7 +50,7 @@ TEST_CASE("our own frames that come back are not decoded as the devices' frames"
                  })
                   .good());
     }
-    CHECK(arm.assembly.bus(0).own == 20);
+    CHECK(arm.assembly.bus().own == 20);
 }
 
 TEST_CASE("frames of this host such as a simulation or a replay on a live bus are counted") {
@@ -60,7 +60,7 @@ TEST_CASE("frames of this host such as a simulation or a replay on a live bus ar
     for (int tick = 0; tick < 20; ++tick) {
         CHECK(arm.tick([](Frames& frames) { frames[joint_frame].origin = hal::Origin::this_host; }).good());
     }
-    CHECK(arm.assembly.bus(0).from_host == 20);
+    CHECK(arm.assembly.bus().from_host == 20);
 }
 
 TEST_CASE("fault 30: unknown identifiers are counted and the first one is named") {
@@ -74,9 +74,9 @@ TEST_CASE("fault 30: unknown identifiers are counted and the first one is named"
                  frames.push_back(frame_of(0x3CA, {1, 2, 3, 4, 5, 6}, frames[0].stamp_ns));
              })
               .good());
-    CHECK(arm.assembly.bus(0).unknown.count() == 2);
-    CHECK(arm.assembly.bus(0).unknown.first().id == 0x111);
-    CHECK(arm.assembly.bus(0).unknown.first().extended);
+    CHECK(arm.assembly.bus().unknown.count() == 2);
+    CHECK(arm.assembly.bus().unknown.first().id == 0x111);
+    CHECK(arm.assembly.bus().unknown.first().extended);
 }
 
 TEST_CASE("fault 18: a second sensor on the same identifiers is detected and neither is learned") {
@@ -111,8 +111,7 @@ TEST_CASE("fault 17: two devices configured for one identifier are detected befo
         const Assembly::Config config{.board = {Board(1, {0}, {1}), Board(second_address, {2}, {3})},
                                       .position = {.max_age_ns = ms, .latency_ns = 0, .qualification = {}},
                                       .position_range = {},
-                                      .clock = {},
-                                      .output_bus = 0};
+                                      .clock = {}};
         return Assembly(config, hal::EffortOutput<4, 4>({.track = config.position, .range = {}}))
             .colliding_id();
     };

@@ -30,7 +30,7 @@ TEST_CASE("fault 38: frames dropped by the kernel or the controller invalidate t
         CHECK(lossy.output() == Reason::frames_lost);
         CHECK(arm.run(20));
     }
-    CHECK(arm.assembly.bus(0).health.losses() == 6);
+    CHECK(arm.assembly.bus().health.losses() == 6);
 }
 
 TEST_CASE("fault 38: halves of a wrench on both sides of a loss are not paired even if their time stamps are "
@@ -158,7 +158,7 @@ TEST_CASE("fault 28: a burst above the limit of a tick is counted and read in th
     CHECK(arm.tick().predicted);
     CHECK(arm.bus.waiting.empty());
     CHECK(arm.ticks_to_recover() <= 2);
-    CHECK(arm.assembly.bus(0).unknown.count() == 600);
+    CHECK(arm.assembly.bus().unknown.count() == 600);
 }
 
 TEST_CASE("halves without their own time stamps are paired in their order") {

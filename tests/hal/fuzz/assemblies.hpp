@@ -39,8 +39,7 @@ auto fuzz_assembly(const std::array<Board, boards>& board, const Output& output)
     return Assembly({.board = board,
                      .position = fuzz_track,
                      .position_range = {fuzz_joint_range, fuzz_joint_range},
-                     .clock = {.tolerance_ns = 5 * fuzz_ms, .max_step_ns = 50 * fuzz_ms, .adopt_after = 3},
-                     .output_bus = 0},
+                     .clock = {.tolerance_ns = 5 * fuzz_ms, .max_step_ns = 50 * fuzz_ms, .adopt_after = 3}},
                     output);
 }
 

@@ -184,8 +184,7 @@ class ArmOnBus {
                              .latency_ns = 0,
                              .qualification = {qualification_ticks, 1000}},
                 .position_range = {{{-3, 3}, {-3, 3}}},
-                .clock = {.tolerance_ns = 5 * ms, .max_step_ns = 100 * ms, .adopt_after = 20},
-                .output_bus = 0};
+                .clock = {.tolerance_ns = 5 * ms, .max_step_ns = 100 * ms, .adopt_after = 20}};
     }
     static hal::WrenchOutput<Sensor, 16> make_output() {
         return {Sensor(0x0D),

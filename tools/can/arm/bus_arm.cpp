@@ -110,7 +110,6 @@ BusArm::Assembly::Config BusArm::config_of(const BusDescription& description) {
                             .position = track_config(description.joints),
                             .position_range = {},
                             .clock = clock_config(description),
-                            .output_bus = 0,
                             .limits = {},
                             .joints = {description.joint_count}};
     std::ranges::transform(description.boards, config.board.begin(), &BusBoard::board);

@@ -79,7 +79,7 @@ class BusArm {
     }
 
     const hal::AssemblyCounters& counters() const { return assembly_.counters(); }
-    const hal::BusWatch& bus() const { return assembly_.bus(0); }
+    const hal::BusWatch& bus() const { return assembly_.bus(); }
 
     /// The sensor with everything that it has reported; null if the joints measure the outputs.
     const AnySensor* sensor() const { return assembly_.output().sensor(); }

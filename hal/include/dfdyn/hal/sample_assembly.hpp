@@ -16,7 +16,7 @@
 
 namespace dfdyn::hal {
 
-/// Assembles samples from the frames of one or two buses: all joints and the outputs, at one instant.
+/// Assembles samples from the frames of a bus: all joints and the outputs, at one instant.
 ///
 /// `take` (or `drain`, for all frames of a bus) accepts the frames as they arrive. `assemble(instant, now)`
 /// returns the sample of an instant in the recent past. Each value is interpolated linearly between the
@@ -35,15 +35,14 @@ namespace dfdyn::hal {
 /// is bad, the sample has `output_valid = false`.
 ///
 /// If `n` is `dynamic`, the configuration contains the number of joints. `Board` is the JointSource of each
-/// of `boards` boards; `Output` is a WrenchOutput or EffortOutput. Positions are on bus 0. Cost of `take`:
-/// O(boards + n); of `assemble`: O(capacity (n + outputs)).
+/// of `boards` boards; `Output` is a WrenchOutput or EffortOutput. Cost of `take`: O(boards + n); of
+/// `assemble`: O(capacity (n + outputs)).
 template <class Scalar, int n, JointSource Board, int boards, class Output, int capacity = 16>
 class SampleAssembly {
   public:
     using Assembled = AssembledSample<Scalar, n, Output::outputs>; ///< sample and report
     using Sample = decltype(Assembled::sample);                    ///< for `Estimator::tick`
     using Report = decltype(Assembled::report);                    ///< why the sample is as it is
-    static constexpr int buses = 2;                                ///< largest number of buses
 
     /// Boards, clocks and limits of an arm.
     struct Config {
@@ -51,7 +50,6 @@ class SampleAssembly {
         TrackConfig position;               ///< period, latency and age of the positions
         PerJoint<Range, n> position_range;  ///< rad
         ClockGate::Config clock;            ///< of the frames' time stamps
-        int output_bus = 0;                 ///< 0, or 1 where the sensor has a bus for itself
         PerJoint<MotionLimits, n> limits{}; ///< largest velocity and acceleration
         Extent<n> joints{};                 ///< at most `largest_joint_count`
     };
@@ -61,23 +59,21 @@ class SampleAssembly {
     constexpr SampleAssembly(const Config& config, const Output& output) noexcept
         : joints_(config.joints), board_(config.board),
           position_(config.joints, config.position, config.position_range, config.limits), output_(output),
-          output_bus_(config.output_bus), watch_{BusWatch(config.clock), BusWatch(config.clock)},
-          moments_(config.joints) {}
+          watch_(config.clock), moments_(config.joints) {}
 
-    /// Accepts a frame of bus 0 or 1, read at `now_ns`. Returns the instant that it completes, if any.
-    constexpr SampleTrigger take(const Frame& frame, std::int64_t now_ns, int bus = 0) noexcept {
-        BusWatch& watch = watch_[static_cast<std::size_t>(bus)];
+    /// Accepts a frame, read at `now_ns`. Returns the instant that it completes, if any.
+    constexpr SampleTrigger take(const Frame& frame, std::int64_t now_ns) noexcept {
         if (frame.error) {
             return {}; // the bus has counted it and has it in its state
         }
         if (frame.origin == Origin::this_socket) {
-            ++watch.own;
+            ++watch_.own;
             return {};
         }
-        watch.from_host += frame.origin == Origin::this_host ? 1U : 0U;
-        const std::uint64_t clocks = watch.clock.adopted();
-        const auto stamp_ns = watch.clock.accept(frame.stamp_ns, now_ns);
-        if (bus == 0 && watch.clock.adopted() != clocks) {
+        watch_.from_host += frame.origin == Origin::this_host ? 1U : 0U;
+        const std::uint64_t clocks = watch_.clock.adopted();
+        const auto stamp_ns = watch_.clock.accept(frame.stamp_ns, now_ns);
+        if (watch_.clock.adopted() != clocks) {
             position_.clock_set();
         }
         if (!stamp_ns) {
@@ -85,18 +81,18 @@ class SampleAssembly {
         }
         Frame timed = frame;
         timed.stamp_ns = *stamp_ns;
-        return offer(timed, bus);
+        return offer(timed);
     }
 
     /// Accepts all frames of a bus, in at most `rounds` drains, and its state. Calls `on_moment` for each
     /// instant that a frame completes.
     template <Bus B, class OnMoment>
-    constexpr void drain(B& bus, std::span<Frame> buffer, OnMoment on_moment, int index = 0) noexcept {
+    constexpr void drain(B& bus, std::span<Frame> buffer, OnMoment on_moment) noexcept {
         for (int round = 0; round < rounds; ++round) {
             const std::span<const Frame> frames = bus.drain(buffer);
-            update(bus.state(), bus.counters(), index);
+            update(bus.state(), bus.counters());
             for (const Frame& frame : frames) {
-                if (const SampleTrigger moment = take(frame, bus.now_ns(), index);
+                if (const SampleTrigger moment = take(frame, bus.now_ns());
                     moment.kind != SampleTrigger::Kind::none) {
                     on_moment(moment);
                 }
@@ -108,17 +104,15 @@ class SampleAssembly {
     }
     /// Accepts all frames of a bus and its state.
     template <Bus B>
-    constexpr void drain(B& bus, std::span<Frame> buffer, int index = 0) noexcept {
-        drain(
-            bus, buffer, [](const SampleTrigger& /*moment*/) {}, index);
+    constexpr void drain(B& bus, std::span<Frame> buffer) noexcept {
+        drain(bus, buffer, [](const SampleTrigger& /*moment*/) {});
     }
 
     /// Accepts the state and the counters of a bus after a drain. `drain` calls it.
-    constexpr void update(BusState state, const BusCounters& counters, int bus = 0) noexcept {
-        BusHealth& health = watch_[static_cast<std::size_t>(bus)].health;
-        const std::uint64_t before = health.losses();
-        health.update(state, counters);
-        if (health.losses() != before && bus == output_bus_) {
+    constexpr void update(BusState state, const BusCounters& counters) noexcept {
+        const std::uint64_t before = watch_.health.losses();
+        watch_.health.update(state, counters);
+        if (watch_.health.losses() != before) {
             output_.lost();
         }
     }
@@ -133,7 +127,7 @@ class SampleAssembly {
         return output_.pending(instant_ns, now_ns) || position_.pending(instant_ns, now_ns);
     }
 
-    /// Returns the sample of an instant not later than `now_ns`, both on the clock of the buses. Missing
+    /// Returns the sample of an instant not later than `now_ns`, both on the clock of the bus. Missing
     /// positions are 0; outputs are 0 without `output_valid`.
     constexpr Assembled assemble(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
         Assembled result{};
@@ -142,7 +136,7 @@ class SampleAssembly {
         result.sample.time_ns = instant_ns;
         fill_ages(result.report, now_ns);
         result.report.position = fill_positions(result.sample, result.report, now_ns);
-        const bool loss = watch_[static_cast<std::size_t>(output_bus_)].health.take_loss();
+        const bool loss = watch_.health.take_loss();
         if (result.valid()) {
             last_instant_ns_ = instant_ns;
             result.report.output = fill_output(result.sample, loss, now_ns);
@@ -156,11 +150,11 @@ class SampleAssembly {
         return result;
     }
 
-    /// Returns a standard identifier that two devices of one bus would send; none if there is no such
-    /// mistake. O(2048 (boards + 1)): call it once at the start.
+    /// Returns a standard identifier that two devices would send; none if there is no such mistake.
+    /// O(2048 (boards + 1)): call it once at the start.
     [[nodiscard]] constexpr std::optional<std::uint32_t> colliding_id() const noexcept {
         for (std::uint32_t id = 0; id <= 0x7FF; ++id) {
-            int senders = output_bus_ == 0 && output_.claims(id) ? 1 : 0;
+            int senders = output_.claims(id) ? 1 : 0;
             for (const Board& board : board_) {
                 senders += board.claims(id) ? 1 : 0;
             }
@@ -173,10 +167,8 @@ class SampleAssembly {
 
     /// Returns the numbers of samples and of refusals by reason.
     [[nodiscard]] constexpr const AssemblyCounters& counters() const noexcept { return counters_; }
-    /// Returns clock and health of bus 0 or 1.
-    [[nodiscard]] constexpr const BusWatch& bus(int index) const noexcept {
-        return watch_[static_cast<std::size_t>(index)];
-    }
+    /// Returns clock and health of the bus.
+    [[nodiscard]] constexpr const BusWatch& bus() const noexcept { return watch_; }
     /// Returns the measurements of a joint, `joint` from 0.
     [[nodiscard]] constexpr const PositionTrack<capacity>& position(int joint) const noexcept {
         return position_[static_cast<std::size_t>(joint)];
@@ -191,36 +183,31 @@ class SampleAssembly {
 
     [[nodiscard]] constexpr std::size_t used() const noexcept { return static_cast<std::size_t>(joints_); }
 
-    /// To the boards and the sensor that are on this bus.
-    constexpr SampleTrigger offer(const Frame& frame, int bus) noexcept {
+    /// To the boards and the sensor.
+    constexpr SampleTrigger offer(const Frame& frame) noexcept {
         bool known = false;
         SampleTrigger moment;
-        if (bus == 0) {
-            for (Board& board : board_) {
-                const Decoded decoded = board.decode(frame);
-                known = known || decoded.kind != Decoded::Kind::nothing || concerns(board, frame);
-                moment = take_decoded(decoded, frame, bus, moment);
-            }
+        for (Board& board : board_) {
+            const Decoded decoded = board.decode(frame);
+            known = known || decoded.kind != Decoded::Kind::nothing || concerns(board, frame);
+            moment = take_decoded(decoded, frame, moment);
         }
-        if (bus == output_bus_) {
-            const Decoded decoded = output_.take(frame);
-            if (decoded.kind == Decoded::Kind::part && decoded.part == 0) {
-                position_.sensor_measured(frame.stamp_ns, output_.period_ns());
-            }
-            known = known || decoded.kind != Decoded::Kind::nothing || concerns(output_, frame);
-            moment = take_decoded(decoded, frame, bus, moment);
+        const Decoded decoded = output_.take(frame);
+        if (decoded.kind == Decoded::Kind::part && decoded.part == 0) {
+            position_.sensor_measured(frame.stamp_ns, output_.period_ns());
         }
+        known = known || decoded.kind != Decoded::Kind::nothing || concerns(output_, frame);
+        moment = take_decoded(decoded, frame, moment);
         if (!known) {
-            watch_[static_cast<std::size_t>(bus)].unknown.add(frame, Reason::ok);
+            watch_.unknown.add(frame, Reason::ok);
         }
         return moment.kind == SampleTrigger::Kind::none && output_.heard()
                    ? moments_.completed(output_.newest_ns())
                    : moment;
     }
 
-    constexpr SampleTrigger take_decoded(const Decoded& decoded, const Frame& frame, int bus,
+    constexpr SampleTrigger take_decoded(const Decoded& decoded, const Frame& frame,
                                          const SampleTrigger& moment) noexcept {
-        BusWatch& watch = watch_[static_cast<std::size_t>(bus)];
         switch (decoded.kind) {
         case Decoded::Kind::values:
             for (int i = 0; i < decoded.joints; ++i) {
@@ -228,10 +215,10 @@ class SampleAssembly {
             }
             break;
         case Decoded::Kind::rejected:
-            watch.rejected.add(frame, decoded.reason);
+            watch_.rejected.add(frame, decoded.reason);
             break;
         case Decoded::Kind::lost:
-            watch.health.device_lost();
+            watch_.health.device_lost();
             break;
         case Decoded::Kind::sync:
             return moment.kind == SampleTrigger::Kind::none ? moments_.synchronised(frame.stamp_ns) : moment;
@@ -269,14 +256,14 @@ class SampleAssembly {
     }
 
     constexpr Reason fill_positions(Sample& sample, Report& report, std::int64_t now_ns) noexcept {
-        if (const Reason down = watch_[0].health.reason(); down != Reason::ok) {
+        if (const Reason down = watch_.health.reason(); down != Reason::ok) {
             report.joint_reason.fill(down);
             return down;
         }
         Reason first = Reason::ok;
         for (std::size_t i = 0; i < used(); ++i) {
             const Measurement<1> measured = position_[i].at(sample.time_ns, now_ns);
-            report.joint_reason[i] = watch_[0].explain(measured.reason);
+            report.joint_reason[i] = watch_.explain(measured.reason);
             if (measured.reason == Reason::ok) {
                 sample.position[static_cast<int>(i)] = static_cast<Scalar>(measured.value[0]);
                 report.position_origin[i] = position_[i].origin(sample.time_ns);
@@ -305,12 +292,11 @@ class SampleAssembly {
     }
 
     constexpr Reason output_condition(const Measurement<output_places>& measured, bool loss) const noexcept {
-        if (const Reason down = watch_[static_cast<std::size_t>(output_bus_)].health.reason();
-            down != Reason::ok) {
+        if (const Reason down = watch_.health.reason(); down != Reason::ok) {
             return down;
         }
         if (measured.reason != Reason::ok) {
-            return watch_[static_cast<std::size_t>(output_bus_)].explain(measured.reason);
+            return watch_.explain(measured.reason);
         }
         if (loss) {
             return Reason::frames_lost;
@@ -322,8 +308,7 @@ class SampleAssembly {
     std::array<Board, static_cast<std::size_t>(boards)> board_;
     JointTracks<n, capacity> position_;
     Output output_;
-    int output_bus_;
-    std::array<BusWatch, buses> watch_;
+    BusWatch watch_;
     SampleTriggerWatch<n> moments_;
 
     std::int64_t last_instant_ns_ = std::numeric_limits<std::int64_t>::min();
