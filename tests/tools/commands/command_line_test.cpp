@@ -32,18 +32,6 @@ const std::string log_file = DFDYN_TEST_DATA_DIR "/ur5_kufieta/Movement_No7_Acc_
 const std::string quick =
     " --outputs i --features 20 --starts 1 --likelihood-rows 60 --lags 4 --rows 0:1200 ";
 
-TEST_CASE("help and version end with status 0 and every subcommand shows an example") {
-    const TemporaryDirectory directory;
-    CHECK(run_program(directory, "--help").status == 0);
-    CHECK_THAT(run_program(directory, "--version").out, Catch::Matchers::StartsWith("dfdyn "));
-    for (const std::string command : {"start", "train", "footprint", "replay", "identify", "simulate",
-                                      "evaluate", "play", "man", "completion"}) {
-        const Outcome outcome = run_program(directory, command + " --help");
-        CHECK(outcome.status == 0);
-        CHECK_THAT(outcome.out, Catch::Matchers::ContainsSubstring("Example:"));
-    }
-}
-
 TEST_CASE("wrong usage and bad input end with status 2 and one line") {
     const TemporaryDirectory directory;
     directory.write("bad.csv", "t,q1,i1\n0,1,2\n0,1,2\n");
