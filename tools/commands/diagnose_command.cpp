@@ -168,6 +168,28 @@ int run(const DiagnoseOptions& options) {
     return refused(work.diagnosis) ? 1 : 0;
 }
 
+/// Adds the options for what the diagnosis writes.
+void add_result_options(CLI::App& command, DiagnoseOptions& options) {
+    command
+        .add_option("-o,--output", options.folder,
+                    "Folder for diagnosis.json, report.html, curves.csv (every row of the curves) and "
+                    "extended_model.json")
+        ->required()
+        ->type_name("DIR");
+    command.add_option("--header", options.header, "The extended model as C++ constants for flash")
+        ->type_name("M.hpp");
+    std::vector<std::string> formats;
+    for (const RobotFormat& format : robot_formats()) {
+        formats.emplace_back(format.name);
+    }
+    command
+        .add_option("--export", options.formats,
+                    "The corrected robot for simulators: masses, centres, friction, armature")
+        ->delimiter(',')
+        ->check(one_of(formats))
+        ->type_name("FORMAT,...");
+}
+
 } // namespace
 
 void add_diagnose_command(CLI::App& app, Command& chosen) {
@@ -187,24 +209,7 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("K1,K2...");
-    command
-        ->add_option("-o,--output", options->folder,
-                     "Folder for diagnosis.json, report.html, curves.csv (every row of the curves) and "
-                     "extended_model.json")
-        ->required()
-        ->type_name("DIR");
-    command->add_option("--header", options->header, "The extended model as C++ constants for flash")
-        ->type_name("M.hpp");
-    std::vector<std::string> formats;
-    for (const RobotFormat& format : robot_formats()) {
-        formats.emplace_back(format.name);
-    }
-    command
-        ->add_option("--export", options->formats,
-                     "The corrected robot for simulators: masses, centres, friction, armature")
-        ->delimiter(',')
-        ->check(one_of(formats))
-        ->type_name("FORMAT,...");
+    add_result_options(*command, *options);
     command->add_flag("--no-held-out", options->quick,
                       "Leave out the error on held-out time, which takes half of the run");
     command->add_flag("--no-setup-check", options->no_setup_check,

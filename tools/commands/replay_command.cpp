@@ -10,6 +10,24 @@ namespace dfdyn::tools {
 
 namespace {
 
+/// Adds the options for recordings that are logs of a CAN bus, and for a live bus.
+void add_bus_options(CLI::App& command, ReplayOptions& options) {
+    command
+        .add_option("--bus", options.bus,
+                    "The devices on a CAN bus (docs/reference/can.md): recordings are candump logs, or --can")
+        ->type_name("B.json");
+    command
+        .add_option("--from", options.log_interface,
+                    "The interface in the log whose frames to take, where there are several")
+        ->type_name("IFACE");
+    command.add_option("--can", options.can.interface, "Instead of --log: this CAN interface, in real time")
+        ->type_name("IFACE");
+    command.add_option("--duration", options.can.duration_s, "Of --can, seconds; else until Ctrl-C")
+        ->check(number_in(0.0, 1e9))
+        ->type_name("S");
+    command.add_option("--record", options.can.record, "Log of what --can receives")->type_name("L.log");
+}
+
 /// Adds the options for what the replay writes and how it learns.
 void add_result_options(CLI::App& command, ReplayOptions& options) {
     command
@@ -53,21 +71,7 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         ->type_name("M.json[,...]");
     options->recordings.add_to(*command);
     command->get_option("--log")->required(false);
-    command
-        ->add_option(
-            "--bus", options->bus,
-            "The devices on a CAN bus (docs/reference/can.md): recordings are candump logs, or --can")
-        ->type_name("B.json");
-    command
-        ->add_option("--from", options->log_interface,
-                     "The interface in the log whose frames to take, where there are several")
-        ->type_name("IFACE");
-    command->add_option("--can", options->can.interface, "Instead of --log: this CAN interface, in real time")
-        ->type_name("IFACE");
-    command->add_option("--duration", options->can.duration_s, "Of --can, seconds; else until Ctrl-C")
-        ->check(number_in(0.0, 1e9))
-        ->type_name("S");
-    command->add_option("--record", options->can.record, "Log of what --can receives")->type_name("L.log");
+    add_bus_options(*command, *options);
     add_result_options(*command, *options);
     options->contacts.add_to(*command);
     options->monitor.add_to(*command);

@@ -285,6 +285,36 @@ int run(const TrainOptions& options) {
     return 0;
 }
 
+/// Adds the options for what is learned, how, and where the model goes.
+void add_model_options(CLI::App& command, TrainOptions& options) {
+    command
+        .add_option("--outputs", options.outputs,
+                    "What to predict: tau (torques), i (motor currents), wrench")
+        ->required()
+        ->type_name("tau|i|wrench");
+    command
+        .add_option("--model", options.structure,
+                    "Structure of the model: features (NP), the robot (P), or both")
+        ->check(one_of(structure_names()))
+        ->capture_default_str();
+    command.add_option("--input", options.input, "What the features see of the positions")
+        ->check(one_of(words_of(input_names(","))))
+        ->capture_default_str();
+    command
+        .add_option("--hyper", options.hyper,
+                    "How hyperparameters are found: marginal likelihood, or cross validation over a grid")
+        ->check(one_of({"ML", "CV"}))
+        ->capture_default_str();
+    command.add_option("-o,--output", options.model, "The model")->required()->type_name("M.json");
+    command.add_option("--header", options.header, "The same model as C++ constants for flash")
+        ->type_name("M.hpp");
+    command
+        .add_option("--derivatives", options.derivatives,
+                    "Input STD: columns qd and qdd of the recording, or estimated from the positions")
+        ->check(one_of({"auto", "estimated", "measured"}))
+        ->capture_default_str();
+}
+
 } // namespace
 
 void add_train_command(CLI::App& app, Command& chosen) {
@@ -293,32 +323,7 @@ void add_train_command(CLI::App& app, Command& chosen) {
         app.add_subcommand("train", "Fits hyperparameters and the start of learning to recordings");
     options->command = command;
     options->recordings.add_to(*command);
-    command
-        ->add_option("--outputs", options->outputs,
-                     "What to predict: tau (torques), i (motor currents), wrench")
-        ->required()
-        ->type_name("tau|i|wrench");
-    command
-        ->add_option("--model", options->structure,
-                     "Structure of the model: features (NP), the robot (P), or both")
-        ->check(one_of(structure_names()))
-        ->capture_default_str();
-    command->add_option("--input", options->input, "What the features see of the positions")
-        ->check(one_of(words_of(input_names(","))))
-        ->capture_default_str();
-    command
-        ->add_option("--hyper", options->hyper,
-                     "How hyperparameters are found: marginal likelihood, or cross validation over a grid")
-        ->check(one_of({"ML", "CV"}))
-        ->capture_default_str();
-    command->add_option("-o,--output", options->model, "The model")->required()->type_name("M.json");
-    command->add_option("--header", options->header, "The same model as C++ constants for flash")
-        ->type_name("M.hpp");
-    command
-        ->add_option("--derivatives", options->derivatives,
-                     "Input STD: columns qd and qdd of the recording, or estimated from the positions")
-        ->check(one_of({"auto", "estimated", "measured"}))
-        ->capture_default_str();
+    add_model_options(*command, *options);
     options->clock.add_to(*command);
     options->sizes.add_to(*command);
     options->setup.add_to(*command);

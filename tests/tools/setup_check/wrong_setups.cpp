@@ -2,7 +2,7 @@
 #include "tests/tools/setup_check/wrong_setups.hpp"
 
 #include "tests/tools/setup_check/mistakes.hpp"
-#include "tools/setup_check/recording_checks.hpp"
+#include "tools/setup_check/checks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -77,6 +77,20 @@ void wrap_all(Recording& recording) {
     }
 }
 
+void scale_masses(tools::Robot& robot, double factor) {
+    for (tools::RobotJoint& joint : robot.joints) {
+        joint.inertia *= factor;
+    }
+}
+
+void hold_from_the_middle_on(Recording& recording, std::size_t output) {
+    const std::size_t width = recording.output.names.size();
+    const std::size_t middle = recording.row_count() / 2;
+    for (std::size_t row = middle; row < recording.row_count(); ++row) {
+        recording.output.values[row * width + output] = recording.output.values[middle * width + output];
+    }
+}
+
 WrongSetup on_outputs(std::string name, SetupFault fault, std::function<void(double*)> change) {
     return {std::move(name), fault,
             [change = std::move(change)](Setup& setup) { change_outputs(setup.recording, change); }};
@@ -110,22 +124,11 @@ std::vector<WrongSetup> wrong_setups(const tools::Robot& other, OutputKind outpu
         on_positions("sign of position 2", SetupFault::torque_sign, [](double* q) { q[1] *= -1; }),
         {"gravity upside down", SetupFault::gravity, [](Setup& s) { s.robot.gravity *= -1; }},
         {"another robot", SetupFault::wrong_robot, [other](Setup& s) { s.robot = other; }},
-        {"masses in grams", SetupFault::wrong_robot,
-         [](Setup& s) {
-             for (tools::RobotJoint& joint : s.robot.joints) {
-                 joint.inertia *= 1000;
-             }
-         }},
+        {"masses in grams", SetupFault::wrong_robot, [](Setup& s) { scale_masses(s.robot, 1000); }},
         on_outputs("output 2 dead", SetupFault::dead_output, [](double* y) { y[1] = 0; }),
         on_outputs("output 1 dead", SetupFault::dead_output, [](double* y) { y[0] = 0.25; }),
         {"output 2 dead from the middle on", SetupFault::dead_output,
-         [](Setup& s) {
-             const std::size_t width = s.recording.output.names.size();
-             const std::size_t middle = s.recording.row_count() / 2;
-             for (std::size_t row = middle; row < s.recording.row_count(); ++row) {
-                 s.recording.output.values[row * width + 1] = s.recording.output.values[middle * width + 1];
-             }
-         }},
+         [](Setup& s) { hold_from_the_middle_on(s.recording, 1); }},
         {"positions wrapped", SetupFault::wrapped_position, [](Setup& s) { wrap_all(s.recording); }},
         {"positions in degrees", SetupFault::position_unit,
          [](Setup& s) { scale(s.recording.position, 180 / std::numbers::pi); }},

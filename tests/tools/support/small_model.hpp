@@ -59,20 +59,8 @@ inline void add_extrapolation(tools::TrainedModel& model, std::mt19937_64& engin
         positive(engine), numbers(engine, outputs, positive), numbers(engine, outputs, positive), {}, 1};
 }
 
-/// The same model with physics. `structure` is P, SP, SP2 or SPK; the outputs are a wrench at a sensor on
-/// link 1, or the torques of the two joints. The motion comes from DFR, or with input STD from measured
-/// derivatives.
-inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const std::string& structure,
-                                               tools::InputKind kind, bool wrench) {
-    tools::TrainedModel model = small_model(engine, kind);
-    std::normal_distribution<double> normal;
-    std::uniform_real_distribution<double> positive(0.5, 2);
-    if (kind == tools::InputKind::STD) {
-        model.input.derivatives = tools::Derivatives::measured;
-        model.input.lags = 0;
-        model.input.position_noise_bound = 0;
-    }
-    const std::size_t outputs = wrench ? 6 : 2;
+/// Chain, effects and selected columns of an arm of two joints, one that turns and one that slides.
+inline tools::PhysicsModel small_arm(bool wrench) {
     constexpr tools::ChainModel::Frame turned{{0.6, -0.8, 0, 0, 0, -1, 0.8, 0.6, 0}, {0.1, 0.2, -0.3}};
     constexpr tools::ChainModel::Frame straight{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.4, 0, 0.1}};
     tools::PhysicsModel physics;
@@ -88,15 +76,40 @@ inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const st
                            {"torque_ripple", 1, 0, 0, 3, 0.5},    {"torque_offset", 1, 0, 0, 0, 0}};
         physics.selected = {1, 9, 10, 20, 21, 22, 23, 24, 25};
     }
-    physics.motion = model.input;
-    if (kind != tools::InputKind::STD) {
-        physics.motion = {};
-        physics.motion.kind = tools::InputKind::DFR;
-        physics.motion.lags = 4;
-        physics.motion.rows_per_joint = 3;
-        physics.motion.rows = numbers(engine, 15, normal);
+    return physics;
+}
+
+/// The motion of the physics: that of input STD, or one of DFR.
+inline tools::InputModel small_motion(std::mt19937_64& engine, std::normal_distribution<double>& normal,
+                                      const tools::InputModel& input) {
+    tools::InputModel motion = input;
+    if (input.kind != tools::InputKind::STD) {
+        motion = {};
+        motion.kind = tools::InputKind::DFR;
+        motion.lags = 4;
+        motion.rows_per_joint = 3;
+        motion.rows = numbers(engine, 15, normal);
     }
-    physics.motion.scale = {1, 1, 1, 1, 1, 1};
+    motion.scale = {1, 1, 1, 1, 1, 1};
+    return motion;
+}
+
+/// The same model with physics. `structure` is P, SP, SP2 or SPK; the outputs are a wrench at a sensor on
+/// link 1, or the torques of the two joints. The motion comes from DFR, or with input STD from measured
+/// derivatives.
+inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const std::string& structure,
+                                               tools::InputKind kind, bool wrench) {
+    tools::TrainedModel model = small_model(engine, kind);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> positive(0.5, 2);
+    if (kind == tools::InputKind::STD) {
+        model.input.derivatives = tools::Derivatives::measured;
+        model.input.lags = 0;
+        model.input.position_noise_bound = 0;
+    }
+    const std::size_t outputs = wrench ? 6 : 2;
+    tools::PhysicsModel physics = small_arm(wrench);
+    physics.motion = small_motion(engine, normal, model.input);
     physics.motion_limit = {10, 50, 100, 10, 50, 100};
     const std::size_t columns = physics.selected.size();
     physics.parameter_names.assign(columns, "parameter");
