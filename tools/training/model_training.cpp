@@ -156,19 +156,6 @@ MatrixXd columns_of(const PhysicsModel& physics, const TrainingData& data, const
     return chosen_columns(*regressor, stored_motion(physics.motion, data, rows), choice);
 }
 
-CombinedPrior combined_prior_of(const TrainedModel& model, const PhysicsProblem& problem) {
-    const PhysicsModel& physics = *model.physics;
-    const ParameterPrior prior =
-        ParameterPrior::independent(static_cast<Index>(physics.selected.size()), physics.prior_variance);
-    const Structure& structure = structure_of(model);
-    if (structure.learns_parameters()) {
-        return physics_start(structure, problem, prior);
-    }
-    return residual_start(problem,
-                          Eigen::Map<const VectorXd>(physics.start.weights.data(),
-                                                     static_cast<Index>(physics.start.weights.size())));
-}
-
 int lags_of(const TrainedModel& model) {
     return std::max(structure_of(model).features ? model.input.lags : 0,
                     model.physics ? model.physics->motion.lags : 0);
@@ -250,7 +237,12 @@ void restart_model(TrainedModel& model, const PreparedTraining& prepared) {
     }
     PhysicsModel& physics = *model.physics;
     const MatrixXd columns = columns_of(physics, prepared.data, rows);
-    const CombinedPrior start = combined_prior_of(model, {model, prepared.data, rows, columns});
+    const ParameterPrior prior =
+        ParameterPrior::independent(static_cast<Index>(physics.selected.size()), physics.prior_variance);
+    const CombinedPrior start =
+        start_of(structure_of(model), {model, prepared.data, rows, columns}, prior,
+                 Eigen::Map<const VectorXd>(physics.start.weights.data(),
+                                            static_cast<Index>(physics.start.weights.size())));
     model.start = start.kernel;
     physics.start = start_model(start.physics);
     physics.coupling = flattened(start.physics.coupling);

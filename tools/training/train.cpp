@@ -134,16 +134,11 @@ TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part
         setup.physics(setup.options.input, setup.rows.usable, choice)->evaluate(part.motion);
     const PhysicsProblem problem{model, setup.data, setup.rows.usable, columns};
     const std::optional<ParameterPrior> robot = knowledge_of(setup, choice, part.motion);
-    const CombinedPrior start = [&] {
-        const auto p = static_cast<Index>(choice.columns.size());
-        const ParameterPrior prior = robot ? *robot : ParameterPrior::independent(p, physics.prior_variance);
-        if (structure.learns_parameters()) {
-            return physics_start(structure, problem, prior);
-        }
-        return residual_start(
-            problem, robot ? physics_start(structure, problem, prior).physics.parameters
-                           : part.fit.parameters.cwiseProduct(part.choice.scale.cwiseQuotient(choice.scale)));
-    }();
+    const auto p = static_cast<Index>(choice.columns.size());
+    const CombinedPrior start =
+        robot ? start_of(structure, problem, *robot, std::nullopt)
+              : start_of(structure, problem, ParameterPrior::independent(p, physics.prior_variance),
+                         part.fit.parameters.cwiseProduct(part.choice.scale.cwiseQuotient(choice.scale)));
     model.start = start.kernel;
     physics.start = start.physics;
     if (!setup.options.shrinkage) {

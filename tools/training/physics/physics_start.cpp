@@ -112,9 +112,14 @@ CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior
     return start;
 }
 
-CombinedPrior physics_start(const Structure& structure, const PhysicsProblem& problem,
-                            const ParameterPrior& prior) {
-    return structure.fits_jointly() ? combined_prior(problem, prior) : parametric_start(problem, prior);
+CombinedPrior start_of(const Structure& structure, const PhysicsProblem& problem, const ParameterPrior& prior,
+                       const std::optional<VectorXd>& fixed) {
+    if (fixed && !structure.learns_parameters()) {
+        return residual_start(problem, *fixed);
+    }
+    CombinedPrior start =
+        structure.fits_jointly() ? combined_prior(problem, prior) : parametric_start(problem, prior);
+    return structure.learns_parameters() ? start : residual_start(problem, start.physics.parameters);
 }
 
 } // namespace dfdyn::tools

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -57,9 +58,10 @@ CombinedPrior residual_start(const PhysicsProblem& problem, const Eigen::VectorX
 /// the Schur complement of pi. Equal to the joint solution for all unknowns. O(N (2d)^2 + N m 2d p + (2d)^3).
 CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior& prior);
 
-/// Returns joint_start() for a structure whose physics and features are fitted jointly, otherwise
-/// parametric_start().
-CombinedPrior physics_start(const Structure& structure, const PhysicsProblem& problem,
-                            const ParameterPrior& prior);
+/// Returns the initial state of a structure with physics. If it learns pi: that of combined_prior() if
+/// physics and features are fitted jointly, otherwise that of parametric_start(). If pi is fixed: that of
+/// residual_start() with `fixed`, or with the estimate under `prior` if there is none.
+CombinedPrior start_of(const Structure& structure, const PhysicsProblem& problem, const ParameterPrior& prior,
+                       const std::optional<Eigen::VectorXd>& fixed);
 
 } // namespace dfdyn::tools
