@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/learner/common_parameters.hpp"
+#include "dfdyn/learner/block_arrow_parts.hpp"
 
 #include <algorithm>
 
 namespace dfdyn {
-
-/// Constants of the two parts of a block-arrow regression (see `BlockArrow`). The initial weights of
-/// `features` are, per output, those of y followed by those of its p columns ψ.
-template <class Scalar, int columns, int p, int m>
-struct BlockArrowConstants {
-    LearnerConstants<Scalar, columns, product(m, sum(p, 1))> features;
-    LearnerConstants<Scalar, p, 1> common;
-    static constexpr std::int64_t start_bytes =
-        decltype(features)::start_bytes + decltype(common)::start_bytes;
-};
 
 /// Recursive least squares of model SPK: y_k = φ'w_k + ψ_k'π + e_k, with the same columns φ but separate
 /// weights for each of the m outputs, and p parameters π common to all outputs (paper, Section IV-A).
@@ -36,7 +26,7 @@ struct BlockArrowConstants {
 /// Learning can be sliced after any panel of the sweep and after any column of weights. Predictions and
 /// variances are those before the sample until its rows are learned by π, and those after it from then on.
 template <class Scalar, int columns, int p, int m>
-class BlockArrow {
+class BlockArrow : public BlockArrowCost<Scalar, columns, p, m> {
   public:
     static constexpr int identity = 3;
     using Constants = BlockArrowConstants<Scalar, columns, p, m>;
@@ -48,7 +38,7 @@ class BlockArrow {
           common_(constants.common, parameters, outputs),
           weights_(Weights::zeros(
               extent<product(regressions, padded(columns))>(regression_count() * padded(columns_)))),
-          present_(zero_residual()), in_hand_(zero_residual()) {
+          present_(Residual::zeros(parameters_, outputs_)), in_hand_(present_) {
         reset();
     }
 
@@ -62,8 +52,8 @@ class BlockArrow {
         }
         common_.reset();
         forgetting_.restart();
-        clear(present_);
-        clear(in_hand_);
+        present_.clear();
+        in_hand_.clear();
         alpha_ = 1;
         noise_variance_ = 1;
         task_ = Task::none;
@@ -169,40 +159,6 @@ class BlockArrow {
         }
     }
 
-    [[nodiscard]] static constexpr Cost cost(int column_count, int parameters, int outputs) noexcept {
-        const Cost shared = CommonParameters<Scalar, p, m>::cost(parameters, outputs);
-        const std::int64_t regression_count = std::int64_t{outputs} * (1 + parameters);
-        const std::int64_t sweep = Factor::sweep_cost(column_count);
-        const std::int64_t variances = outputs * UdFactor<Scalar, p>::variance_cost(parameters);
-        // While a sample is being learned, a tick also pays for `variance` during a sweep, or for the
-        // additional work of `predict` while the weights change.
-        const std::int64_t in_hand = std::max(Factor::sweeping_variance_cost(column_count) + shared.variance,
-                                              column_count + 1 + regression_count + variances);
-        return {.predict = regression_count * column_count + shared.predict,
-                .variance = Factor::variance_cost(column_count) + in_hand,
-                .learn = sweep + shared.learn + regression_count * weights_cost(column_count),
-                .forget = shared.forget + forget_cost(column_count) + sweep,
-                .largest_step = std::max({Factor::largest_step(column_count), weights_cost(column_count),
-                                          forget_cost(column_count), shared.largest_step}),
-                .reset_covariance = Factor::reset_cost(column_count) + shared.reset_covariance +
-                                    std::int64_t{outputs} * parameters * weights_cost(column_count)};
-    }
-
-    [[nodiscard]] static constexpr std::int64_t state_bytes(int column_count, int parameters,
-                                                            int outputs) noexcept {
-        const std::int64_t residual =
-            storage_bytes<Scalar>(std::int64_t{outputs} * parameters) + storage_bytes<Scalar>(outputs);
-        return Factor::state_bytes(column_count) +
-               CommonParameters<Scalar, p, m>::state_bytes(parameters, outputs) +
-               storage_bytes<Scalar>(std::int64_t{outputs} * (1 + parameters) * padded(column_count)) +
-               2 * residual;
-    }
-
-    /// Maximum over all calls.
-    [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
-        return frame_bytes + 72 * std::int64_t{sizeof(Scalar)};
-    }
-
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         Factor::visit_state(self.factor_, visitor);
@@ -221,48 +177,18 @@ class BlockArrow {
     }
 
   private:
-    /// The next task. From `forget` on, no sample is pending.
-    enum class Task : int {
-        none,
-        residual,
-        sweep,
-        common,
-        weights,
-        forget,
-        bound,
-        reset_factor,
-        reset_coupling,
-        reset_parameters
-    };
+    using Task = ArrowTask;
+    using Residual = ArrowResidual<Scalar, p, m>;
 
     static constexpr int regressions = product(m, sum(p, 1));
 
+    using Base = BlockArrowCost<Scalar, columns, p, m>;
+    using Base::forget_cost;
+    using Base::weights_cost;
     using Factor = UdFactor<Scalar, columns>;
     using Weights = Storage<Scalar, product(regressions, Factor::padded(columns))>;
 
-    /// Residual of one sample's outputs and of their columns after regression on φ.
-    struct Residual {
-        Storage<Scalar, product(m, p)> rows; ///< ψ̃, m × p
-        Storage<Scalar, m> output;           ///< present: φ'a_k; pending: ẽ_k
-    };
-
-    [[nodiscard]] Residual zero_residual() const noexcept {
-        return {Storage<Scalar, product(m, p)>::zeros(extent<product(m, p)>(outputs_ * parameters_)),
-                Storage<Scalar, m>::zeros(outputs_)};
-    }
-
-    static void clear(Residual& residual) noexcept {
-        std::fill(residual.rows.begin(), residual.rows.end(), Scalar(0));
-        std::fill(residual.output.begin(), residual.output.end(), Scalar(0));
-    }
-
     static constexpr int padded(int count) noexcept { return Factor::padded(count); }
-    static constexpr std::int64_t weights_cost(int column_count) noexcept {
-        return std::int64_t{column_count} + 1;
-    }
-    static constexpr std::int64_t forget_cost(int column_count) noexcept {
-        return Forgetting<Scalar>::cost + 2 + Factor::scale_and_bound_cost(column_count);
-    }
     [[nodiscard]] int regression_count() const noexcept { return outputs_ * (1 + parameters_); }
 
     /// Returns the weights of column c of output k: a_k for c = 0, those of G_k for c = 1 … p.
