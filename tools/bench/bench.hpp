@@ -7,7 +7,11 @@
 #include "tools/bench/suites/model_bench.hpp"
 #include "tools/bench/suites/tick_bench.hpp"
 #include "tools/bench/timing/machine.hpp"
+#include "tools/report/figure_page.hpp"
 
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -55,5 +59,14 @@ std::vector<BenchTarget> bench_targets(const BenchResults& results);
 /// Returns the exponent of the float learner's time over the sizes of 200 columns and more; 0 if there are
 /// fewer than two.
 double growth_exponent(const TickBench& bench);
+
+/// Returns the results as tables, with a chart of time over size.
+FigurePage bench_page(const BenchResults& results);
+
+/// Returns the results as numbers, schema `dfdyn.bench/1`.
+nlohmann::json bench_json(const BenchResults& results);
+
+/// Writes bench.json, bench.md (the page), and pictures/tick-time.svg into `folder`, which is created.
+void write_bench(const std::filesystem::path& folder, const BenchResults& results);
 
 } // namespace dfdyn::tools

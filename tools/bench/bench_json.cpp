@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/file_set.hpp"
-#include "tools/bench/bench_report.hpp"
+#include "tools/bench/bench.hpp"
 #include "tools/bench/memory_table.hpp"
 #include "tools/report/chart.hpp"
 

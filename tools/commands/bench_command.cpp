@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/atomic_file.hpp"
 #include "tools/base/system/progress.hpp"
-#include "tools/bench/bench_report.hpp"
+#include "tools/bench/bench.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/value_checks.hpp"

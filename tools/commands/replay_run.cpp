@@ -14,7 +14,6 @@
 #include "tools/replay/opponents/rigid_body.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/replay/replay_csv.hpp"
-#include "tools/replay/replay_json.hpp"
 #include "tools/replay/replay_report.hpp"
 #include "tools/replay/replay_summary.hpp"
 #include "tools/report/report.hpp"

@@ -4,6 +4,8 @@
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/opponents/opponents.hpp"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <ostream>
 #include <span>
 #include <string>
@@ -49,5 +51,8 @@ ReplaySummary summarise(std::span<const TrainedModel> models, const RuntimeEstim
 
 /// Prints them as tables, with the compiler's flags next to the times.
 void print_summary(std::ostream& out, const ReplaySummary& summary);
+
+/// Returns the statistics of a replay, schema `dfdyn.replay/1`; values without data are null.
+nlohmann::ordered_json replay_json(const ReplaySummary& summary);
 
 } // namespace dfdyn::tools

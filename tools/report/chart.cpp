@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/chart.hpp"
 
+#include "tools/report/axis.hpp"
 #include "tools/report/chart_svg.hpp"
-#include "tools/report/log_axis.hpp"
 #include "tools/report/page_text.hpp"
 #include "tools/report/report_assets.hpp"
 

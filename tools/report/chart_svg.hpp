@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/report/axis_tick.hpp"
+#include "tools/report/axis.hpp"
 
 #include <algorithm>
 #include <cstddef>

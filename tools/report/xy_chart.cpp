@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/xy_chart.hpp"
 
+#include "tools/report/axis.hpp"
 #include "tools/report/chart_svg.hpp"
-#include "tools/report/linear_axis.hpp"
 #include "tools/report/page_text.hpp"
 
 #include <algorithm>

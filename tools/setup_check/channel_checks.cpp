@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/setup_check/channel_checks.hpp"
+#include "tools/setup_check/checks.hpp"
 
 #include "tools/base/recording/stretches.hpp"
 #include "tools/base/text/instant.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
-#include "tools/setup_check/recording_checks.hpp"
 
 #include <algorithm>
 #include <cmath>

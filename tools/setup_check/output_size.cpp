@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/setup_check/output_size.hpp"
+#include "tools/setup_check/checks.hpp"
 
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/text/number.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/setup_check/readings.hpp"
+#include "tools/setup_check/checks.hpp"
 
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/setup_check/recording_checks.hpp"
+#include "tools/setup_check/checks.hpp"
 
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/recording/stretches.hpp"

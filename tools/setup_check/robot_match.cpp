@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/setup_check/robot_match.hpp"
+#include "tools/setup_check/checks.hpp"
 
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
@@ -79,10 +79,10 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
     constexpr double far_better = 1.2;
     constexpr double much = 0.06;
     constexpr int turns = 2;
-    const RobotMotion& motion = arm.recorded.motion;
     if (arm.wrench()) {
         return {};
     }
+    const RobotMotion& motion = arm.recorded.motion;
     const RigidParts parts = rigid_parts(arm.robot, arm.kind, motion);
     const VectorXd weight = deviations(parts.gravity);
     const MatrixXd smooth = smooth_columns(motion);
@@ -93,13 +93,11 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
         if (!(weight[k] > carries * weight.maxCoeff()) || !swings(motion, k, turns)) {
             continue;
         }
-        const std::optional<Comparison> found = compare(arm, parts, smooth, k);
-        if (!found) {
-            continue;
+        if (const std::optional<Comparison> found = compare(arm, parts, smooth, k)) {
+            ratio += std::log(std::max(found->by_robot, least_share) / std::max(found->by_any, least_share));
+            left += found->by_robot;
+            columns.push_back(arm.recording.output.names[static_cast<std::size_t>(k)]);
         }
-        ratio += std::log(std::max(found->by_robot, least_share) / std::max(found->by_any, least_share));
-        left += found->by_robot;
-        columns.push_back(arm.recording.output.names[static_cast<std::size_t>(k)]);
     }
     const auto count = static_cast<double>(columns.size());
     if (columns.empty() || ratio < far_better * count || left < much * count) {

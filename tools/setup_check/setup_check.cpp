@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/setup_check.hpp"
 
-#include "tools/setup_check/channel_checks.hpp"
-#include "tools/setup_check/motion_checks.hpp"
-#include "tools/setup_check/output_size.hpp"
-#include "tools/setup_check/readings.hpp"
-#include "tools/setup_check/recording_checks.hpp"
+#include "tools/setup_check/checks.hpp"
 #include "tools/setup_check/rigid_comparison.hpp"
-#include "tools/setup_check/robot_match.hpp"
 
 #include <Eigen/Core>
 

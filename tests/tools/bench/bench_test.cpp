@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run of all benchmarks with few repetitions, and its output. No times are checked.
-#include "tools/bench/bench_report.hpp"
+#include "tools/bench/bench.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/report/log_axis.hpp"
+#include "tools/report/axis.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
@@ -65,7 +65,7 @@ TEST_CASE("powers of ten are labelled and 2 and 5 as well if there is room") {
     CHECK(labels_of({0.02, 1, 0, 1}) == std::vector<std::string>{"0.02", "0.05", "0.1", "0.2", "0.5", "1"});
     CHECK(labels_of({1e-6, 1e-3, 0, 1}).front() == "10<tspan dy=\"-5\" font-size=\"9\">-6</tspan>");
     CHECK(labels_of({1e-10, 1e10, 0, 1}).size() == 11);
-    CHECK(tools::ticks_of({1, 10, 0, 1}).size() == 10);
+    CHECK(tools::ticks_of(tools::LogAxis{1, 10, 0, 1}).size() == 10);
 }
 
 } // namespace log_axis_test

@@ -3,7 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/support/balanced_markup.hpp"
-#include "tools/report/linear_axis.hpp"
+#include "tools/report/axis.hpp"
 
 #include <cmath>
 #include <limits>

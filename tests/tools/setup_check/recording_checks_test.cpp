@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/setup_check/channel_checks.hpp"
-#include "tools/setup_check/recording_checks.hpp"
+#include "tools/setup_check/checks.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/setup_check/mistakes.hpp"

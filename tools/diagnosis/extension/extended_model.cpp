@@ -13,8 +13,8 @@
 #include "tools/training/data/recorded_data.hpp"
 #include "tools/training/data/stored_motion.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
-#include "tools/training/start/covariance_start.hpp"
 #include "tools/training/start/limits.hpp"
+#include "tools/training/start/normal_equations.hpp"
 
 #include <algorithm>
 #include <array>

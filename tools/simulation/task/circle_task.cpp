@@ -10,6 +10,18 @@
 
 namespace dfdyn::tools {
 
+SlowVariation::SlowVariation(double size, double time_constant_s, double period_s)
+    : size_(size), left_(std::exp(-period_s / time_constant_s)), period_s_(period_s) {}
+
+void SlowVariation::advance(NormalSource& source) {
+    first_ = left_ * first_ + std::sqrt(1 - left_ * left_) * source.next();
+    second_ = left_ * second_ + (1 - left_) * first_;
+    // the second low pass halves the variance
+    const double value = size_ * std::numbers::sqrt2 * second_;
+    rate_ = (value - value_) / period_s_;
+    value_ = value;
+}
+
 Circle::Circle(const CircleTask& model, const Robot& robot, double period_s, std::uint64_t seed)
     : model_(model), period_s_(period_s), kinematics_(robot), source_(seed, stream::task),
       speed_(model.speed_variation, model.variation_time_s, period_s),

@@ -98,4 +98,13 @@ void store_inverse(const CovarianceFactor& factor, std::vector<double>& unit_upp
     }
 }
 
+void store_covariance(const Eigen::MatrixXd& covariance, std::vector<double>& unit_upper,
+                      std::vector<double>& diagonal) {
+    const std::optional<CovarianceFactor> factor = CovarianceFactor::of(covariance);
+    if (!factor) {
+        throw InputError("start of learning: expected a positive definite covariance, found another");
+    }
+    store_inverse(information_factor(factor->inverse(), 1), unit_upper, diagonal);
+}
+
 } // namespace dfdyn::tools

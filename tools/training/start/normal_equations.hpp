@@ -42,4 +42,9 @@ CovarianceFactor information_factor(Eigen::MatrixXd information, double prior_va
 void store_inverse(const CovarianceFactor& factor, std::vector<double>& unit_upper,
                    std::vector<double>& diagonal);
 
+/// Computes the factors U (strictly upper part, by columns, as in StartModel) and D of `covariance` = U D U'.
+/// Throws InputError unless it is positive definite. O(p^3).
+void store_covariance(const Eigen::MatrixXd& covariance, std::vector<double>& unit_upper,
+                      std::vector<double>& diagonal);
+
 } // namespace dfdyn::tools

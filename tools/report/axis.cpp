@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/report/log_axis.hpp"
+#include "tools/report/axis.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,6 +10,24 @@
 namespace dfdyn::tools {
 
 namespace {
+
+constexpr double room = 0.03; ///< of the range, at either end
+constexpr double most_steps = 10;
+
+/// Returns the smallest 1, 2 or 5 times a power of ten that is at least `value`.
+double round_step(double value) {
+    const double power = std::pow(10, std::floor(std::log10(value)));
+    const double digit = value / power * (1 - 1e-9);
+    return power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10);
+}
+
+/// `value` is a multiple of `step`, so that rounding errors near zero become zero.
+std::string label_of(double value, double step) {
+    std::array<char, 32> text{};
+    const double clean = std::abs(value) < 1e-6 * step ? 0 : value;
+    return {text.data(),
+            std::to_chars(text.data(), text.data() + text.size(), clean, std::chars_format::general, 6).ptr};
+}
 
 constexpr double nearly = 1e-9; ///< of a decade: tolerance for rounding errors
 
@@ -41,6 +59,39 @@ std::string label_of(int digit, int exponent) {
 }
 
 } // namespace
+
+double LinearAxis::pixel(double value) const {
+    const double place = std::clamp((value - low) / (high - low), 0.0, 1.0);
+    return low_pixel + place * (high_pixel - low_pixel);
+}
+
+LinearAxis linear_axis(const std::vector<double>& values, double low_pixel, double high_pixel) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const double value : values) {
+        if (std::isfinite(value)) {
+            low = std::min(low, value);
+            high = std::max(high, value);
+        }
+    }
+    if (low > high) {
+        return {0, 1, low_pixel, high_pixel};
+    }
+    const double least = 1e-9 * std::max({std::abs(low), std::abs(high), 1e-9});
+    const double margin = std::max(room * (high - low), least);
+    return {low - margin, high + margin, low_pixel, high_pixel};
+}
+
+std::vector<AxisTick> ticks_of(const LinearAxis& axis) {
+    const double step = round_step((axis.high - axis.low) / most_steps);
+    std::vector<AxisTick> ticks;
+    const double first = std::ceil(axis.low / step);
+    const double last = std::floor(axis.high / step);
+    for (double multiple = first; multiple <= last; ++multiple) {
+        ticks.push_back({multiple * step, label_of(multiple * step, step)});
+    }
+    return ticks;
+}
 
 double LogAxis::pixel(double value) const {
     const double place = value > low ? std::min(std::log(value / low) / std::log(high / low), 1.0) : 0.0;
