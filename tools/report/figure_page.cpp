@@ -53,18 +53,15 @@ void append_section(std::ostringstream& text, const PageSection& section) {
 } // namespace
 
 std::string render_figure_page(const FigurePage& page) {
-    std::string sections;
+    PageParts parts;
+    parts.title = page.title;
+    parts.summary = page.summary;
+    parts.style = std::string{assets::report_css}.append(assets::chart_css).append(assets::figure_page_css);
     for (const PageSection& section : page.sections) {
-        sections += section_html(section);
+        parts.content += section_html(section);
     }
-    return fill_page(
-        assets::figure_page_html,
-        {{"title", escape_html(page.title)},
-         {"summary", escape_html(page.summary)},
-         {"sections", sections},
-         {"facts", facts_html(page.facts)},
-         {"style",
-          std::string{assets::report_css}.append(assets::chart_css).append(assets::figure_page_css)}});
+    parts.content += "\n" + facts_html(page.facts);
+    return page_html(parts);
 }
 
 std::string figure_page_markdown(const FigurePage& page) {

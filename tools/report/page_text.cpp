@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/page_text.hpp"
 
+#include "tools/report/report_assets.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <bit>
@@ -100,6 +102,17 @@ std::string fill_page(std::string_view page, const std::map<std::string, std::st
         filled += texts.at(std::string{page.substr(open + 2, close - open - 2)});
         page.remove_prefix(close + 2);
     }
+}
+
+std::string page_html(const PageParts& parts) {
+    return fill_page(assets::page_html, {{"title", escape_html(parts.title)},
+                                         {"summary", escape_html(parts.summary)},
+                                         {"remark", parts.remark},
+                                         {"style", parts.style},
+                                         {"content", parts.content},
+                                         {"notice", parts.notice},
+                                         {"scripts", parts.scripts},
+                                         {"script_policy", parts.script_policy}});
 }
 
 } // namespace dfdyn::tools

@@ -29,4 +29,18 @@ std::string base64_doubles(std::span<const double> values);
 /// `page` must have its }}. Throws std::out_of_range for a name without a text.
 std::string fill_page(std::string_view page, const std::map<std::string, std::string, std::less<>>& texts);
 
+/// The parts of a page: plain text for `title` and `summary`, HTML for the others.
+struct PageParts {
+    std::string title, summary;
+    std::string remark;        ///< below the summary; may be empty
+    std::string style;         ///< style sheets
+    std::string content;       ///< below the header
+    std::string notice;        ///< comment in the head; may be empty
+    std::string scripts;       ///< after the content; may be empty
+    std::string script_policy; ///< addition to the page's security policy; empty without scripts
+};
+
+/// Returns the page as one HTML file. All pages of the program have this frame.
+std::string page_html(const PageParts& parts);
+
 } // namespace dfdyn::tools

@@ -197,18 +197,23 @@ std::string render_report(const Report& report) {
     check_annotations(report);
     check_tables(report.tables);
     const PageCurves page = page_curves(report);
-    return fill_page(assets::report_html,
-                     {{"title", escape_html(report.title)},
-                      {"summary", escape_html(report.summary)},
-                      {"thinning", thinning_html(report, page.report.time_s.size())},
-                      {"tables", tables_html(report.tables)},
-                      {"facts", facts_html(report.facts)},
-                      {"data", script_json(page_data(page))},
-                      {"style", std::string{assets::report_css}.append(assets::report_charts_css)},
-                      {"script", page_script()},
-                      {"uplot_style", std::string{assets::uplot_css}},
-                      {"uplot_script", std::string{assets::uplot_js}},
-                      {"uplot_licence", std::string{assets::uplot_licence}}});
+    PageParts parts;
+    parts.title = report.title;
+    parts.summary = report.summary;
+    parts.remark = thinning_html(report, page.report.time_s.size());
+    parts.style = std::string{assets::uplot_css}
+                      .append("\n")
+                      .append(assets::report_css)
+                      .append(assets::report_charts_css);
+    parts.content = fill_page(assets::report_content_html,
+                              {{"tables", tables_html(report.tables)}, {"facts", facts_html(report.facts)}});
+    parts.notice = "<!-- The charts are drawn by uPlot, which is included below under this licence:\n" +
+                   std::string{assets::uplot_licence} + "\n-->\n";
+    parts.scripts = fill_page(assets::report_scripts_html, {{"data", script_json(page_data(page))},
+                                                            {"uplot_script", std::string{assets::uplot_js}},
+                                                            {"script", page_script()}});
+    parts.script_policy = "; script-src 'unsafe-inline'";
+    return page_html(parts);
 }
 
 } // namespace dfdyn::tools
