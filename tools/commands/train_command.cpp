@@ -285,7 +285,7 @@ int run(const TrainOptions& options) {
     return 0;
 }
 
-/// Adds the options for what is learned, how, and where the model goes.
+/// Adds the options that define the model, and its files.
 void add_model_options(CLI::App& command, TrainOptions& options) {
     command
         .add_option("--outputs", options.outputs,

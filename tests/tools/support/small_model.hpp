@@ -79,7 +79,7 @@ inline tools::PhysicsModel small_arm(bool wrench) {
     return physics;
 }
 
-/// The motion of the physics: that of input STD, or one of DFR.
+/// The motion of the physics: from the derivatives of input STD, or from DFR.
 inline tools::InputModel small_motion(std::mt19937_64& engine, std::normal_distribution<double>& normal,
                                       const tools::InputModel& input) {
     tools::InputModel motion = input;

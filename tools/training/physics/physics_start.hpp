@@ -58,9 +58,9 @@ CombinedPrior residual_start(const PhysicsProblem& problem, const Eigen::VectorX
 /// the Schur complement of pi. Equal to the joint solution for all unknowns. O(N (2d)^2 + N m 2d p + (2d)^3).
 CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior& prior);
 
-/// Returns the initial state of a structure with physics. If it learns pi: that of combined_prior() if
-/// physics and features are fitted jointly, otherwise that of parametric_start(). If pi is fixed: that of
-/// residual_start() with `fixed`, or with the estimate under `prior` if there is none.
+/// Returns the initial state of a structure with physics. For a learned pi this is combined_prior() if
+/// physics and features are fitted jointly, otherwise parametric_start(). For a fixed pi this is
+/// residual_start() with `fixed`; without `fixed`, with the estimate under `prior`.
 CombinedPrior start_of(const Structure& structure, const PhysicsProblem& problem, const ParameterPrior& prior,
                        const std::optional<Eigen::VectorXd>& fixed);
 
