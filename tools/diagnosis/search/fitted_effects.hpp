@@ -32,6 +32,9 @@ struct FittedEffects {
     Eigen::Index uncertain_masses = 0;
     Eigen::MatrixXd noise; ///< bins x m: spectra of the residual
     std::vector<EffectColumn> nuisance;
+    /// Per output: no effect is exactly right, because the weights of the noise and equal weights give values
+    /// that differ by more than noise (`make_robust`).
+    std::vector<bool> inexact;
 
     /// Returns the contribution (T x m) of the `wanted` chosen effects to the outputs, by `fit`.
     Eigen::MatrixXd effects(const DiagnosisSignals& signals,

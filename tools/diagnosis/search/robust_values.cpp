@@ -113,20 +113,20 @@ bool contradict(const EffectFit& fit, const EffectFit& even, const std::vector<I
            far * static_cast<double>(columns.size());
 }
 
-/// Returns a lasting effect on the outputs `even` that `values` do not support: its coefficients are
+/// Returns a lasting effect on the `inexact` outputs that `values` do not support: its coefficients are
 /// inadmissible, or its evidence is the least and does not pay its price.
-std::optional<std::size_t> unsupported(const FittedEffects& at, const std::vector<bool>& even) {
+std::optional<std::size_t> unsupported(const FittedEffects& at) {
     std::optional<std::size_t> result;
     double least = 0;
     for (std::size_t effect = 0; effect < at.named_effects().size(); ++effect) {
         const ChosenShape& one = at.chosen[effect];
         const Candidate& candidate = at.candidates[one.candidate];
         const EffectShape& shape = candidate.shapes[one.shape];
-        const auto on_even = [&](const EffectColumn::Part& part) {
-            return even[static_cast<std::size_t>(part.output)];
+        const auto on_inexact = [&](const EffectColumn::Part& part) {
+            return at.inexact[static_cast<std::size_t>(part.output)];
         };
         if (candidate.event ||
-            !std::ranges::any_of(candidate.columns[shape.columns.front()].parts, on_even)) {
+            !std::ranges::any_of(candidate.columns[shape.columns.front()].parts, on_inexact)) {
             continue;
         }
         if (!shape.allowed(at.coefficients(effect))) {
@@ -144,13 +144,13 @@ std::optional<std::size_t> unsupported(const FittedEffects& at, const std::vecto
 std::optional<std::size_t> choose_values(FittedEffects& at, Refit& refit) {
     const auto outputs = static_cast<std::size_t>(refit.outputs());
     const EffectFit all_even = refit.fit(at.named_effects(), std::vector<bool>(outputs, true));
-    std::vector<bool> even;
+    at.inexact.clear();
     for (Index output = 0; output < refit.outputs(); ++output) {
-        even.push_back(contradict(at.named, all_even, refit.columns_of(all_even, output)));
+        at.inexact.push_back(contradict(at.named, all_even, refit.columns_of(all_even, output)));
     }
-    at.values = refit.fit(at.named_effects(), even);
+    at.values = refit.fit(at.named_effects(), at.inexact);
     at.values.columns = at.named.columns;
-    return unsupported(at, even);
+    return unsupported(at);
 }
 
 } // namespace

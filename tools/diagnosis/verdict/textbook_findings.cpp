@@ -3,6 +3,7 @@
 
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/verdict/arm_fit.hpp"
 #include "tools/diagnosis/verdict/finding_gain.hpp"
 #include "tools/diagnosis/verdict/findings.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,25 +26,56 @@ using Eigen::MatrixXd;
 
 /// Relative deviation of a parameter from one recording of an arm to the next. Viscous friction depends on
 /// the lubricant's temperature. Chosen with the thirteen recordings of tests/data/ur5_kufieta.
-double between_recordings(TextbookTerm term) { return term == TextbookTerm::viscous ? 0.15 : 0.05; }
+double between_recordings(TextbookTerm term) {
+    return term == TextbookTerm::viscous || term == TextbookTerm::inertia ? 0.15 : 0.05;
+}
 
-/// Returns the finding of a term; its confidence is below 0.5 where the data do not support it.
-Finding finding_of(const DiagnosisWork& work, const Effect& effect, const MovingFit& fit, Index output) {
+/// Returns whether the gears of an arm are real ones: at half of the joints that move, and at two at least,
+/// no effect is exactly right.
+bool friction_everywhere(const DiagnosisWork& work) {
+    const DiagnosisSignals& signals = *work.signals;
+    const std::vector<bool>& inexact = work.fitted_effects.inexact;
+    std::size_t moving = 0;
+    std::size_t real = 0;
+    for (std::size_t joint = 0; !signals.wrench() && joint < signals.joints(); ++joint) {
+        const bool moves = !signals.hardly_moves(joint);
+        moving += moves ? 1 : 0;
+        real +=
+            moves && (work.diagnosis.by_least_squares[joint] || (joint < inexact.size() && inexact[joint]))
+                ? 1
+                : 0;
+    }
+    return real >= 2 && 2 * real >= moving;
+}
+
+/// Returns the probability that a value is known to its half.
+double probability_of_size(double value, double deviation) {
+    constexpr double share = 0.5;
+    return std::erf(share * std::abs(value) / (deviation * std::numbers::sqrt2));
+}
+
+/// Returns the finding of a term of a fit. `everywhere`: the fit is that of the arm, which has friction at
+/// every joint; only its size is in question.
+Finding finding_of(const DiagnosisWork& work, const Effect& effect, const MovingFit& fit, Index output,
+                   bool everywhere) {
     constexpr double price = 8; // least log-evidence of a cause with one coefficient in the panel's search
     const auto term = static_cast<Index>(*effect.textbook);
     const double value = fit.values[term];
-    const double deviation = std::sqrt(fit.covariance(term, term));
-    const double reach = std::hypot(reach_of_95(deviation, value),
-                                    deviations_of_95 * between_recordings(*effect.textbook) * value);
+    const double of_fit = std::max(std::sqrt(fit.covariance(term, term)), 1e-12);
+    const double scatter = between_recordings(*effect.textbook) * value;
+    const double deviation = everywhere ? std::hypot(of_fit, scatter) : of_fit;
+    const double reach = everywhere ? deviations_of_95 * deviation
+                                    : std::hypot(reach_of_95(of_fit, value), deviations_of_95 * scatter);
     const ParameterKind& kind = effect.parameters.front();
     Finding finding;
     finding.effect = effect.name;
     finding.where = numbered("joint", static_cast<std::size_t>(output));
     finding.parameters = {{kind.name, kind.unit, value, value - reach, value + reach}};
-    finding.margin_to_nothing = 0.5 * std::pow(value / std::max(deviation, 1e-12), 2) - price;
+    finding.margin_to_nothing = 0.5 * std::pow(value / deviation, 2) - price;
     finding.margin_to_others = std::numeric_limits<double>::infinity();
-    finding.confidence = calibrated_confidence(finding, static_cast<double>(work.signals->rows()) /
-                                                            work.signals->measured.rate_hz);
+    const double duration_s = static_cast<double>(work.signals->rows()) / work.signals->measured.rate_hz;
+    finding.confidence = everywhere && effect.friction ? probability_of_size(value, deviation)
+                                                       : calibrated_confidence(finding, duration_s);
     finding.confirm = confirmation(finding);
     return finding;
 }
@@ -51,20 +84,21 @@ bool physically_possible(const Effect& effect, double value) {
     return effect.textbook == TextbookTerm::offset || value > 0;
 }
 
-/// Returns the findings of plain least squares at an output's joint.
+/// Returns the findings of a fit at an output's joint.
 std::vector<Finding> findings_at(const DiagnosisWork& work, const MovingFit& fit, Index output,
-                                 const Gains& gains) {
+                                 bool everywhere, const Gains& gains) {
     std::vector<Finding> findings;
     for (const Effect& effect : effect_catalogue()) {
         if (!effect.textbook ||
             !physically_possible(effect, fit.values[static_cast<Index>(*effect.textbook)])) {
             continue;
         }
-        Finding finding = finding_of(work, effect, fit, output);
+        Finding finding = finding_of(work, effect, fit, output, everywhere);
         MatrixXd share = MatrixXd::Zero(work.signals->rows(), work.signals->outputs());
         const auto term = static_cast<Index>(*effect.textbook);
         share.col(output) = fit.values[term] * fit.columns.col(term);
-        if (finding.margin_to_nothing > 0 && gains.tell(finding, share)) {
+        const bool supported = finding.margin_to_nothing > 0 || (everywhere && effect.friction);
+        if (supported && gains.tell(finding, share)) {
             findings.push_back(std::move(finding));
         }
     }
@@ -88,41 +122,62 @@ void replace_findings(std::vector<Finding>& findings, std::vector<Finding> bette
     std::ranges::move(better, std::back_inserter(findings));
 }
 
-} // namespace
-
-void name_by_least_squares(DiagnosisWork& work) {
-    constexpr Index fewest_blocks = 10; // twice the coefficients
+/// Returns plain least squares of each output. Sets `textbook` of the diagnosis and `extended`.
+std::vector<MovingFit> fit_outputs(DiagnosisWork& work) {
     const DiagnosisSignals& signals = *work.signals;
     Diagnosis& diagnosis = work.diagnosis;
     diagnosis.textbook = MatrixXd::Zero(5, signals.outputs());
     work.extended = signals.nominal + work.fitted_effects.model(signals);
     const MatrixXd all_rows =
         textbook_fit(signals, work.measured, signals.nominal, signals.rows()).prediction;
-    MatrixXd left = work.measured; // least squares and pushes will be taken off
-    std::vector<std::pair<Index, MovingFit>> better;
+    std::vector<MovingFit> fits;
     for (Index output = 0; output < signals.outputs(); ++output) {
-        const auto number = static_cast<std::size_t>(output);
-        MovingFit fit = fit_moving_rows(signals, work.measured.col(output), signals.nominal.col(output),
-                                        output, work.gains_known);
-        diagnosis.textbook.col(output) = fit.values;
-        left.col(output) -= fit.columns * fit.values;
-        if (diagnosis.by_least_squares[number]) {
+        fits.push_back(fit_moving_rows(signals, work.measured.col(output), signals.nominal.col(output),
+                                       output, work.gains_known));
+        diagnosis.textbook.col(output) = fits.back().values;
+        if (diagnosis.by_least_squares[static_cast<std::size_t>(output)]) {
             work.extended.col(output) = all_rows.col(output);
-            if (!signals.wrench() && !signals.hardly_moves(number) && fit.blocks >= fewest_blocks) {
-                better.emplace_back(output, std::move(fit));
-            }
         }
     }
+    return fits;
+}
+
+/// Returns what the fits of single outputs leave of the measured ones.
+MatrixXd rest_of(const DiagnosisWork& work, const std::vector<MovingFit>& fits) {
+    MatrixXd rest = work.measured;
+    for (std::size_t output = 0; output < fits.size(); ++output) {
+        rest.col(static_cast<Index>(output)) -= fits[output].columns * fits[output].values;
+    }
+    return rest;
+}
+
+} // namespace
+
+void name_by_least_squares(DiagnosisWork& work) {
+    constexpr Index fewest_blocks = 10; // twice the coefficients
+    const DiagnosisSignals& signals = *work.signals;
+    ArmFit fit;
+    fit.joints = fit_outputs(work);
+    const bool everywhere = friction_everywhere(work);
+    if (everywhere) {
+        fit = fit_arm(signals, work.measured, std::move(fit.joints), work.gains_known);
+    } else {
+        fit.rest = rest_of(work, fit.joints);
+    }
     for (const StationaryContact& push : work.pushes) {
-        left.col(static_cast<Index>(push.joint)) -= push.share;
+        fit.rest.col(static_cast<Index>(push.joint)) -= push.share;
     }
-    const Gains gains(signals, left, diagnosis.output_names);
-    for (const auto& [output, fit] : better) {
-        const auto number = static_cast<std::size_t>(output);
-        replace_findings(diagnosis.findings, findings_at(work, fit, output, gains), numbered("joint", number),
-                         numbered("actuator", number), fit.another_gain);
+    const Gains gains(signals, fit.rest, work.diagnosis.output_names);
+    for (std::size_t output = 0; !signals.wrench() && output < fit.joints.size(); ++output) {
+        const MovingFit& own = fit.joints[output];
+        if ((everywhere || work.diagnosis.by_least_squares[output]) && !signals.hardly_moves(output) &&
+            own.blocks >= fewest_blocks) {
+            replace_findings(work.diagnosis.findings,
+                             findings_at(work, own, static_cast<Index>(output), everywhere, gains),
+                             numbered("joint", output), numbered("actuator", output), own.another_gain);
+        }
     }
-    sort_by_gain(diagnosis.findings);
+    sort_by_gain(work.diagnosis.findings);
 }
 
 } // namespace dfdyn::tools

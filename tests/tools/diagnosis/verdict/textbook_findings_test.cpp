@@ -161,4 +161,42 @@ TEST_CASE("the intervals of plain least squares hold the truth under slow noise"
     CHECK(dry_held >= 90);
 }
 
+TEST_CASE("where no effect is exactly right at half of the joints, the friction of every joint is named") {
+    DFDYN_SEEDED_ENGINE(engine);
+    DiagnosisWork work = work_with_friction(engine, 0.3);
+    const DiagnosisSignals& signals = *work.signals;
+    for (Index joint = 1; joint < 6; ++joint) {
+        work.measured.col(joint) += viscous * signals.measured.motion.velocity.col(joint) +
+                                    dry * signals.direction(joint) + slow_noise(signals.rows(), 0.3, engine);
+    }
+    work.diagnosis.by_least_squares = std::vector<bool>(6, false);
+    work.diagnosis.findings = {finding("presliding_hysteresis", "joint3", 0.9),
+                               finding("external_contact", "joint3", 0.9), finding("payload", "tool", 0.9)};
+    DiagnosisWork exact = work;
+
+    work.fitted_effects.inexact = {true, true, true, false, false, false};
+    name_by_least_squares(work);
+    for (const std::string joint : {"joint1", "joint2", "joint3", "joint4", "joint5", "joint6"}) {
+        for (const auto& [effect, truth] :
+             {std::pair{"coulomb_friction", dry}, {"viscous_friction", viscous}}) {
+            CAPTURE(joint, effect);
+            const Finding* const one = found(work, effect, joint);
+            REQUIRE(one != nullptr);
+            CHECK(one->confidence >= 0.5);
+            CHECK(one->parameters.front().low < truth);
+            CHECK(one->parameters.front().high > truth);
+        }
+        const Finding* const offset = found(work, "torque_offset", joint); // there is none
+        CHECK((offset == nullptr || offset->confidence < 0.5));
+    }
+    CHECK(found(work, "presliding_hysteresis", "joint3")->confidence < 0.5);
+    CHECK(found(work, "external_contact", "joint3")->confidence == 0.9); // an event
+    CHECK(found(work, "payload", "tool")->confidence == 0.9);            // not of a joint
+    CHECK(work.extended.isApprox(signals.nominal)); // the model that errs less, which was not asked here
+
+    exact.fitted_effects.inexact = {true, true, false, false, false, false};
+    name_by_least_squares(exact);
+    CHECK(exact.diagnosis.findings.size() == 3);
+}
+
 } // namespace textbook_findings_test

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/verdict/arm_fit.hpp"
+
+#include "tools/robot/firmware_chain.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index terms = 5;          ///< of plain least squares, for each joint
+constexpr double known_gain = 0.03; ///< standard deviation of torque constants that are given
+constexpr double unknown = 1e3;     ///< standard deviation (SI units) of a term without a prior
+/// Time between independent samples of the residual. Chosen with the thirteen recordings of
+/// tests/data/ur5_kufieta: 148 of 154 intervals of friction then hold the mean of the recordings.
+constexpr double correlation_s = 0.1;
+
+/// Returns the standard deviations of the links' parameters: what a robot's file may be wrong by.
+VectorXd link_deviations(const VectorXd& nominal) {
+    constexpr double mass_share = 0.1, centre_m = 0.03, inertia_share = 0.3;
+    constexpr double least = 1e-6; // of links without a mass
+    VectorXd deviations(nominal.size());
+    for (Index first = 0; first < nominal.size(); first += 10) {
+        const double mass = nominal[first];
+        const double inertia = (nominal[first + 4] + nominal[first + 7] + nominal[first + 9]) / 2;
+        deviations[first] = mass_share * mass;
+        deviations.segment<3>(first + 1).setConstant(centre_m * mass);
+        deviations.segment<6>(first + 4).setConstant(inertia_share * std::abs(inertia));
+    }
+    return deviations.cwiseMax(least);
+}
+
+/// The normal equations of all joints. Unknown are the links' parameters and then the terms of each joint,
+/// all as differences from the robot's file.
+class ArmEquations {
+  public:
+    ArmEquations(const DiagnosisSignals& signals, const MatrixXd& measured,
+                 const std::vector<MovingFit>& plain)
+        : signals_(signals), target_(measured - signals.nominal), plain_(plain),
+          links_(link_deviations(nominal_parameters(signals.robot, signals.kind))) {
+        for (Index joint = 0; joint < joints(); ++joint) {
+            weight_.emplace_back(weight_of(joint));
+            const MovingFit& own = plain[static_cast<std::size_t>(joint)];
+            variance_.push_back(mean_square(joint, measured.col(joint) - own.columns * own.values));
+            add_products(joint);
+        }
+    }
+
+    Index joints() const { return target_.cols(); }
+    Index first_term(Index joint) const { return links_.size() + terms * joint; }
+
+    /// Solves with these deviations of the gains (n), and takes the noise from what is left.
+    void solve(const VectorXd& gain_deviation) {
+        const Index size = first_term(joints());
+        MatrixXd system = MatrixXd::Zero(size, size);
+        VectorXd moment = VectorXd::Zero(size);
+        system.diagonal().head(links_.size()) = links_.cwiseAbs2().cwiseInverse();
+        system.diagonal().tail(size - links_.size()).setConstant(1 / (unknown * unknown));
+        for (Index joint = 0; joint < joints(); ++joint) {
+            const auto number = static_cast<std::size_t>(joint);
+            const double gain = gain_deviation[joint];
+            system(first_term(joint), first_term(joint)) += 1 / (gain * gain);
+            const double rows = std::max(1.0, correlation_s * signals_.measured.rate_hz);
+            const double scale = 1 / (rows * std::max(variance_[number], 1e-12));
+            const std::vector<Index> own = unknowns_of(joint);
+            system(own, own) += scale * gram_[number];
+            moment(own) += scale * moment_[number];
+        }
+        const Eigen::LDLT<MatrixXd> factor(system);
+        values_ = factor.solve(moment);
+        covariance_ = factor.solve(MatrixXd::Identity(size, size));
+        for (Index joint = 0; joint < joints(); ++joint) {
+            variance_[static_cast<std::size_t>(joint)] = mean_square(joint, rest(joint));
+        }
+    }
+
+    VectorXd values(Index joint) const { return values_.segment(first_term(joint), terms); }
+    MatrixXd covariance(Index joint) const {
+        return covariance_.block(first_term(joint), first_term(joint), terms, terms);
+    }
+    VectorXd rest(Index joint) const {
+        return target_.col(joint) - columns(joint) * values_(unknowns_of(joint));
+    }
+
+  private:
+    /// Returns the weights of the rows; a joint that hardly moves has none.
+    VectorXd weight_of(Index joint) const {
+        if (signals_.hardly_moves(static_cast<std::size_t>(joint))) {
+            return VectorXd::Zero(signals_.rows());
+        }
+        return signals_.measured.weight.size() > 0 ? VectorXd(signals_.measured.weight.col(joint))
+                                                   : VectorXd(VectorXd::Ones(signals_.rows()));
+    }
+
+    double mean_square(Index joint, const VectorXd& error) const {
+        const VectorXd& weight = weight_[static_cast<std::size_t>(joint)];
+        return weight.dot(error.cwiseAbs2()) / std::max(weight.sum(), 1.0);
+    }
+
+    std::vector<Index> unknowns_of(Index joint) const {
+        std::vector<Index> result(static_cast<std::size_t>(links_.size() + terms));
+        std::iota(result.begin(), result.end() - terms, 0);
+        std::iota(result.end() - terms, result.end(), first_term(joint));
+        return result;
+    }
+
+    MatrixXd columns(Index joint) const {
+        MatrixXd result(signals_.rows(), links_.size() + terms);
+        result << signals_.regressor(Eigen::seqN(joint, signals_.rows(), joints()), Eigen::all),
+            plain_[static_cast<std::size_t>(joint)].columns;
+        return result;
+    }
+
+    void add_products(Index joint) {
+        const MatrixXd own = columns(joint);
+        const MatrixXd weighted = weight_.back().asDiagonal() * own;
+        gram_.emplace_back(own.transpose() * weighted);
+        moment_.emplace_back(weighted.transpose() * target_.col(joint));
+    }
+
+    const DiagnosisSignals& signals_;
+    MatrixXd target_;
+    const std::vector<MovingFit>& plain_;
+    VectorXd links_; ///< standard deviations of the links' parameters
+    std::vector<VectorXd> weight_, moment_;
+    std::vector<MatrixXd> gram_;
+    std::vector<double> variance_; ///< per joint, of what is left
+    VectorXd values_;
+    MatrixXd covariance_;
+};
+
+/// Returns the gains' deviations: the given torque constants hold where the data do not contradict them.
+VectorXd gain_deviations(const ArmEquations& free, bool gains_known) {
+    constexpr double far = 3;
+    VectorXd result = VectorXd::Constant(free.joints(), unknown);
+    for (Index joint = 0; gains_known && joint < free.joints(); ++joint) {
+        const double deviation = std::hypot(std::sqrt(free.covariance(joint)(0, 0)), known_gain);
+        if (std::abs(free.values(joint)[0]) < far * deviation) {
+            result[joint] = known_gain;
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+ArmFit fit_arm(const DiagnosisSignals& signals, const MatrixXd& measured, std::vector<MovingFit> plain,
+               bool gains_known) {
+    constexpr int rounds = 3; // the noise hardly changes any more
+    ArmEquations equations(signals, measured, plain);
+    equations.solve(VectorXd::Constant(equations.joints(), unknown));
+    const VectorXd gains = gain_deviations(equations, gains_known);
+    for (int round = 0; round < rounds; ++round) {
+        equations.solve(gains);
+    }
+    ArmFit fit{{}, MatrixXd(signals.rows(), equations.joints())};
+    for (Index joint = 0; joint < equations.joints(); ++joint) {
+        MovingFit& own = plain[static_cast<std::size_t>(joint)];
+        fit.rest.col(joint) = equations.rest(joint);
+        own.values = equations.values(joint);
+        own.values[0] += 1;
+        own.covariance = equations.covariance(joint);
+        own.another_gain = gains_known && gains[joint] > known_gain;
+    }
+    fit.joints = std::move(plain);
+    return fit;
+}
+
+} // namespace dfdyn::tools
