@@ -240,9 +240,9 @@ void restart_model(TrainedModel& model, const PreparedTraining& prepared) {
     const ParameterPrior prior =
         ParameterPrior::independent(static_cast<Index>(physics.selected.size()), physics.prior_variance);
     const CombinedPrior start =
-        start_of(structure_of(model), {model, prepared.data, rows, columns}, prior,
-                 Eigen::Map<const VectorXd>(physics.start.weights.data(),
-                                            static_cast<Index>(physics.start.weights.size())));
+        initial_state_of(structure_of(model), {model, prepared.data, rows, columns}, prior,
+                         Eigen::Map<const VectorXd>(physics.start.weights.data(),
+                                                    static_cast<Index>(physics.start.weights.size())));
     model.start = start.kernel;
     physics.start = start_model(start.physics);
     physics.coupling = flattened(start.physics.coupling);

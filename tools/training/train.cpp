@@ -136,9 +136,10 @@ TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part
     const std::optional<ParameterPrior> robot = knowledge_of(setup, choice, part.motion);
     const auto p = static_cast<Index>(choice.columns.size());
     const CombinedPrior start =
-        robot ? start_of(structure, problem, *robot, std::nullopt)
-              : start_of(structure, problem, ParameterPrior::independent(p, physics.prior_variance),
-                         part.fit.parameters.cwiseProduct(part.choice.scale.cwiseQuotient(choice.scale)));
+        robot ? initial_state_of(structure, problem, *robot, std::nullopt)
+              : initial_state_of(
+                    structure, problem, ParameterPrior::independent(p, physics.prior_variance),
+                    part.fit.parameters.cwiseProduct(part.choice.scale.cwiseQuotient(choice.scale)));
     model.start = start.kernel;
     physics.start = start.physics;
     if (!setup.options.shrinkage) {

@@ -34,12 +34,12 @@ class ScaledOutputs {
 
     /// Returns the measured outputs of the last `normalise`.
     [[nodiscard]] const Outputs& target() const noexcept { return target_; }
-    /// Where the regression writes the ratios of variances that `extrapolate` converts, one per output.
+    /// Returns the buffer, one number per output, into which the regression writes ratios of variances.
     [[nodiscard]] Scalar* ratio() noexcept { return ratio_.data(); }
-    /// Where the regression writes the prediction of the physics alone, one per output.
+    /// Returns the buffer, one number per output, for the prediction of the physics alone.
     [[nodiscard]] Scalar* without_features() noexcept { return without_features_.data(); }
 
-    /// Returns `ok` for measured outputs within their limits.
+    /// Returns `ok` for measured outputs, in their own units, within their limits.
     [[nodiscard]] Reason check(const Constants& constants, const Sample& sample) const noexcept {
         if (!sample.output_valid) {
             return Reason::output_missing;
@@ -68,9 +68,9 @@ class ScaledOutputs {
     }
 
     /// Reduces the prediction, in units of the noise, by the doubt at its input (see `Extrapolation`), and
-    /// converts `ratio_` to the variances of measurements about it. After a change of the arm, P covers only
-    /// the samples since then, while the weights are still the best estimate elsewhere: with `reduce` false
-    /// the prediction is not reduced.
+    /// converts the ratios to the variances of measurements about it. After a change of the arm, P covers
+    /// only the samples since then, while the weights are still the best estimate elsewhere: with `reduce`
+    /// false the prediction is not reduced.
     void extrapolate(const Constants& constants, Scalar feature_variance, bool reduce,
                      Estimate& estimate) noexcept {
         const auto& known = constants.extrapolation;

@@ -13,12 +13,14 @@ namespace {
 
 using namespace dfdyn::tools;
 
-/// Documented values of a joint. Those of joints 5 and 6 are not comparable: their motors are coupled.
+/// Documented friction of a joint. That of joints 5 and 6 is not comparable: their motors are coupled.
 struct Documented {
-    double viscous, dry, rotor;
+    double viscous, dry;
 };
-constexpr std::array<Documented, 4> documented_joints{
-    {{8.05, 7.14, 0.362}, {5.53, 8.26, 0.362}, {1.97, 6.34, 0.0988}, {1.11, 2.48, 0.0313}}};
+constexpr std::array<Documented, 4> documented_friction{
+    {{8.05, 7.14}, {5.53, 8.26}, {1.97, 6.34}, {1.11, 2.48}}};
+/// The coupling adds 0.0096 kg·m² to the rotor of joint 5.
+constexpr std::array<double, 6> documented_rotors{0.362, 0.362, 0.0988, 0.0313, 0.0468, 0.0105};
 
 Diagnosis diagnosis_of_tx40() {
     const std::string data = DFDYN_TEST_DATA_DIR;
@@ -52,17 +54,19 @@ double value_of(const Diagnosis& diagnosis, const std::string& effect, const std
 
 TEST_CASE("the friction found in seven seconds of a real TX40 is what its owner documents") {
     const Diagnosis diagnosis = diagnosis_of_tx40();
-    int rotors = 0;
-    for (std::size_t i = 0; i < documented_joints.size(); ++i) {
+    for (std::size_t i = 0; i < documented_friction.size(); ++i) {
         const std::string where = "joint" + std::to_string(i + 1);
-        const Documented& expected = documented_joints[i];
+        const Documented& expected = documented_friction[i];
         CAPTURE(where);
         CHECK(value_of(diagnosis, "viscous_friction", where) == Approx(expected.viscous).epsilon(0.2));
         CHECK(value_of(diagnosis, "coulomb_friction", where) == Approx(expected.dry).epsilon(0.2));
-        const double rotor = value_of(diagnosis, "rotor_inertia", where);
-        rotors += std::abs(rotor - expected.rotor) < 0.5 * expected.rotor ? 1 : 0;
     }
-    CHECK(rotors >= 3);
+    int rotors = 0;
+    for (std::size_t i = 0; i < documented_rotors.size(); ++i) {
+        const double rotor = value_of(diagnosis, "rotor_inertia", "joint" + std::to_string(i + 1));
+        rotors += std::abs(rotor - documented_rotors[i]) < 0.5 * documented_rotors[i] ? 1 : 0;
+    }
+    CHECK(rotors >= 4);
     const auto wrist = std::ranges::find(diagnosis.unexplained, 4, &Unexplained::output);
     REQUIRE(wrist != diagnosis.unexplained.end());
     CHECK(std::ranges::find(wrist->depends_on, "qd6") != wrist->depends_on.end());

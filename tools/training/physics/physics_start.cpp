@@ -112,8 +112,8 @@ CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior
     return start;
 }
 
-CombinedPrior start_of(const Structure& structure, const PhysicsProblem& problem, const ParameterPrior& prior,
-                       const std::optional<VectorXd>& fixed) {
+CombinedPrior initial_state_of(const Structure& structure, const PhysicsProblem& problem,
+                               const ParameterPrior& prior, const std::optional<VectorXd>& fixed) {
     if (fixed && !structure.learns_parameters()) {
         return residual_start(problem, *fixed);
     }

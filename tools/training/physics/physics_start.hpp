@@ -60,8 +60,9 @@ CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior
 
 /// Returns the initial state of a structure with physics. For a learned pi this is combined_prior() if
 /// physics and features are fitted jointly, otherwise parametric_start(). For a fixed pi this is
-/// residual_start() with `fixed`; without `fixed`, with the estimate under `prior`.
-CombinedPrior start_of(const Structure& structure, const PhysicsProblem& problem, const ParameterPrior& prior,
-                       const std::optional<Eigen::VectorXd>& fixed);
+/// residual_start() with `fixed` (p, in the units of PhysicsProblem's columns); without `fixed`, with the
+/// estimate under `prior`.
+CombinedPrior initial_state_of(const Structure& structure, const PhysicsProblem& problem,
+                               const ParameterPrior& prior, const std::optional<Eigen::VectorXd>& fixed);
 
 } // namespace dfdyn::tools

@@ -15,9 +15,9 @@ class StampSequence {
     /// set back. A single such sample is an outlier.
     static constexpr int restart_samples = 3;
 
-    /// Processes the stamp of a sample. `period_ns`: nominal sample period; 0: none, samples are lost in
-    /// steps longer than `gap_ns`. Returns `ok`, `gap` or `clock_restarted` for a sample to use, the last two
-    /// if it begins a new window; `time_not_increasing` for a sample to refuse. Cost: `SampleClock::cost`.
+    /// Processes the stamp of a sample. `period_ns`: nominal sample period, or 0 if there is none; a step
+    /// longer than `gap_ns` then means lost samples. Returns `ok`; `gap` or `clock_restarted` if the sample
+    /// begins a new window; `time_not_increasing` if it must be refused. Cost: `SampleClock::cost`.
     Reason accept(std::int64_t time_ns, std::int64_t period_ns, std::int64_t gap_ns) noexcept {
         Reason reason = Reason::ok;
         const bool first = past_samples_ == none;

@@ -32,7 +32,7 @@ enum class ArrowTask : int {
     reset_parameters
 };
 
-/// Residual of one sample's outputs, and of the columns that they share, after regression on φ.
+/// Residual of one sample's outputs y_k and of their own columns ψ_k, after regression on φ.
 template <class Scalar, int p, int m>
 struct ArrowResidual {
     Storage<Scalar, product(m, p)> rows; ///< ψ̃, m × p
