@@ -38,9 +38,7 @@ inline void fight(const CampaignArm& arm, Trigger trigger, std::uint64_t frames,
                   CampaignRow& sum) {
     const CampaignRow row = Campaign(arm, trigger, engine).run(frames, campaign_faults());
     print(row, name_of(trigger));
-    for (const std::string& wrong : row.wrong) {
-        std::cout << "wrong: " << wrong << '\n';
-    }
+    sum.wrong.insert(sum.wrong.end(), row.wrong.begin(), row.wrong.end());
     sum.frames += row.frames;
     sum.faults += row.faults;
     sum.samples += row.samples;
@@ -60,6 +58,9 @@ inline void fight(const CampaignArm& arm, Trigger trigger, std::uint64_t frames,
 inline void check_sum(CampaignRow sum, double most_wrong, double most_refused) {
     sum.family = "all";
     print(sum, "");
+    for (const std::string& wrong : sum.wrong) {
+        std::cout << "wrong " << wrong << '\n';
+    }
     CHECK(share(sum.wrong_positions + sum.wrong_outputs, sum.accepted) <= most_wrong);
     CHECK(sum.accepted > sum.samples / 3); // it is not right by saying nothing
     CHECK(sum.undecidable_positions < sum.accepted / 50);

@@ -52,8 +52,8 @@ TEST_CASE("the legend and the campaign have the same faults") {
     CHECK(found == campaign_faults().size());
 }
 
-// Passes with seed 1 and 23 of the other 26 seeds that were tried (2, 3, 101 to 112, 201 to 212).
+// Passes with seeds 1 and 601 to 608, which chose rules, and 711 to 718, which did not.
 TEST_CASE("all faults mixed over five million frames make at most one of a thousand accepted values wrong",
           "[.long]") {
-    fight_all(5'000'000, 0.001, 0.03);
+    fight_all(5'000'000, 0.001, 0.02);
 }

@@ -39,4 +39,16 @@ TEST_CASE("before it has learned the device's resolution, the limit decides") {
     }
 }
 
+TEST_CASE("the device's resolution is learned at rest too, where the effort changes") {
+    FrozenEffortGate gate(100);
+    for (int tick = 0; tick < 200; ++tick) {
+        CHECK_FALSE(gate.frozen(0.01 * (tick % 3), 0.5));
+    }
+    int accepted = 0;
+    for (int tick = 0; tick < 90; ++tick) {
+        accepted += gate.frozen(3, position(tick)) ? 0 : 1;
+    }
+    CHECK(accepted < 20);
+}
+
 } // namespace frozen_effort_test

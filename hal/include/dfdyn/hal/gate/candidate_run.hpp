@@ -36,6 +36,7 @@ class CandidateRun {
         run_ = other_goes_on ? other_ : MotionRun();
         other_ = {};
         run_.extend(reading, tolerance);
+        contradicted_ = contradicted_ || (recent && !repeats && jumps(comparison, tolerance));
         return Step::begins;
     }
 
@@ -66,6 +67,17 @@ class CandidateRun {
   private:
     static constexpr int min_other_readings = 2; ///< of the other run before the one that replaces the run
     static constexpr int min_run_readings = 2;   ///< of a run that its successor contradicts
+
+    /// Returns true if no motion leads from the run before to this one.
+    [[nodiscard]] constexpr bool jumps(const RunComparison& comparison,
+                                       const MotionTolerance& tolerance) const noexcept {
+        constexpr int min_readings = 3; // of which a motion is known
+        constexpr double periods = 1.5;
+        return tolerance.period_ns > 0 && before_.readings() >= min_readings &&
+               run_.readings() >= min_readings &&
+               !comparison.meets(before_, run_, periods * seconds_between(0, tolerance.period_ns),
+                                 [](const MotionLine&) { return 1.0; });
+    }
 
     MotionRun run_;
     MotionRun before_; ///< the last run that ended

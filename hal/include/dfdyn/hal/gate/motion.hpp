@@ -27,7 +27,13 @@ namespace dfdyn::hal {
 ///   (`position_lost`) until the program starts again.
 /// - Another run that does not connect is refused for as long as its readings lead from one to the next. A
 ///   jump or a silence that leads to where the joint can be ends it, after twenty times as many readings. So
-///   do twenty times as many readings themselves where the jump was within the velocity limit.
+///   do twenty times as many readings themselves where the jump was as small as the velocity limit allows in
+///   a period or two. After fifty times as many readings the limits allow any position: then only a jump ends
+///   it that takes back the first one, or the program's restart.
+/// - A position that has been trusted again for a shorter time than the silence or the jump before it lasted
+///   (at most 0.4 s) may be the wrong one: a run that connects with what was trusted before is as good.
+/// - A run at the device's zero that takes back the jump before it is of a bit that was stuck, not of a
+///   restart.
 /// - A moving joint that repeats its last reading, bit for bit, where it cannot have stopped, is frozen until
 ///   the readings change. So is one that returns from a silence with readings that do not change, unless it
 ///   was at rest and still is where it was.
@@ -99,6 +105,7 @@ class MotionGate : private MotionEvidence {
     /// The time since the last trusted reading is not known any more: the clock of the stamps was set.
     constexpr void forget_time() noexcept {
         time_known_ = trusted_.empty() || disturbed_ || lost();
+        established_ = {};
         refused_time_known_ = !lost();
     }
 
@@ -199,6 +206,7 @@ class MotionGate : private MotionEvidence {
 
     constexpr Verdict refuse(const EncoderReading& reading, Reason reason) noexcept {
         ++refusals_;
+        lost_readings_ = lost() ? std::min(lost_readings_ + 1, lost_for_good()) : 0;
         return {reason, reading.position_rad};
     }
 
@@ -230,11 +238,12 @@ class MotionGate : private MotionEvidence {
     }
 
     constexpr void believe(const MotionRun& run) noexcept {
-        trusted_ = run;
+        replace_trusted(run);
         candidate_.clear();
         unfit_.reset();
         counts_from_zero_ = false;
         refused_ = {};
+        lost_readings_ = 0;
         interrupted_ = false;
         disturbed_ = false;
         time_known_ = true;
@@ -253,6 +262,7 @@ class MotionGate : private MotionEvidence {
             return refuse(reading, reason);
         }
         if (step == CandidateRun::Step::begins) {
+            note_jump();
             suspected_ = may_be_frozen(run().first());
             expected_ = expected && run().readings() == 1;
         }
@@ -268,7 +278,8 @@ class MotionGate : private MotionEvidence {
             return refuse(reading, reason);
         }
         if (!trusted_.empty() &&
-            (!comes_from_trusted(run(), expected_) || (has_lost_zero() && goes_on_from_refused(run())))) {
+            (!comes_from_trusted(run(), expected_) || (has_lost_zero() && goes_on_from_refused(run())) ||
+             (lost_readings_ == lost_for_good() && !takes_back(lost_jump_rad_)))) {
             return lose(reading);
         }
         return run().readings() >= needed_readings() || stands_at_zero ? settle(reading)
@@ -283,15 +294,22 @@ class MotionGate : private MotionEvidence {
 
     /// Refuses the run that ends with this reading, and what goes on from it.
     constexpr Verdict lose(const EncoderReading& reading) noexcept {
+        lost_jump_rad_ = lost() ? lost_jump_rad_ : jump_rad_;
         const bool new_here = !lost() || !connects(refused_, run());
-        const bool at_zero = begins_at_zero(run().first(), run().begin_line(0, config_.period_ns));
+        const bool at_zero =
+            begins_at_zero(run().first(), run().begin_line(0, config_.period_ns)) && !takes_back_jump(run());
         zero_lost_ = at_zero || (zero_lost_ && !new_here);
         refused_ = run();
         candidate_.interrupt();
         return refuse(reading, Reason::position_lost);
     }
 
-    std::uint8_t off_ = 0; ///< which of the last eight readings led from no other, a bit each
+    /// Readings after which being within the limits is no evidence: they allow any position.
+    [[nodiscard]] constexpr int lost_for_good() const noexcept { return 50 * config_.qualification.readings; }
+
+    int lost_readings_ = 0;    ///< refused one after the other
+    double lost_jump_rad_ = 0; ///< with which they began
+    std::uint8_t off_ = 0;     ///< which of the last eight readings led from no other, a bit each
     std::uint64_t refusals_ = 0;
     std::uint64_t restarts_ = 0;
     std::uint64_t beyond_ = 0;

@@ -7,8 +7,10 @@
 #include "dfdyn/hal/gate/zero_watch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace dfdyn::hal {
 
@@ -35,7 +37,8 @@ class MotionEvidence {
           zero_(tolerance_, config.max_age_ns + 2 * config.jitter_ns) {}
 
     static constexpr int times_when_lost = 20; ///< as many readings are needed after a contradiction
-    static constexpr double clock_s = 0.05;    ///< in which frames are left out while the clock is set
+    static constexpr std::int64_t longest_trial_ns = 400'000'000; ///< until trusted readings are established
+    static constexpr double clock_s = 0.05; ///< in which frames are left out while the clock is set
 
     /// Returns true while readings are refused that do not connect with the trusted ones.
     [[nodiscard]] constexpr bool lost() const noexcept { return !refused_.empty(); }
@@ -88,11 +91,16 @@ class MotionEvidence {
         return trusted_.leads_to(reading, tolerance_, longest_s());
     }
 
-    /// Returns whether the velocity limit allows what the acceleration limit does not, from one reading to
-    /// the next: an impact, or a clock that was set by a few milliseconds.
+    /// Returns whether the readings jumped by no more than the velocity limit allows in one or two periods,
+    /// within a short silence at most: an impact, or a clock that was set by a few milliseconds.
     [[nodiscard]] constexpr bool jumped_little() const noexcept {
-        return !zero_lost_ && tolerance_.reaches(trusted_.last(), refused_.first()) &&
-               refused_.first().stamp_ns - trusted_.last().stamp_ns <= 2 * config_.period_ns;
+        const EncoderReading& from = trusted_.last();
+        const EncoderReading& to = refused_.first();
+        const std::int64_t apart_ns = to.stamp_ns - from.stamp_ns;
+        const std::int64_t period_ns = config_.period_ns > 0 ? config_.period_ns : apart_ns;
+        const double dt_s = seconds_between(0, std::clamp(apart_ns, period_ns, 2 * period_ns));
+        return !zero_lost_ && recently(from.stamp_ns, to.stamp_ns) &&
+               magnitude(to.position_rad - from.position_rad) <= tolerance_.reach(dt_s, to.step_rad);
     }
 
     /// Returns whether the readings that are refused are those of an encoder that has lost its zero, not of a
@@ -157,7 +165,8 @@ class MotionEvidence {
         const bool disturbed =
             (!time_known_ && !comparison_.reaches_after_silence(trusted_, run().first())) ||
             (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
-        return lost() || disturbed || candidate_.contradicted() ? most_readings() : least;
+        const bool doubtful = time_known_ && !connects(trusted_, run());
+        return lost() || disturbed || doubtful || candidate_.contradicted() ? most_readings() : least;
     }
 
     /// How many readings are needed after a contradiction.
@@ -167,7 +176,65 @@ class MotionEvidence {
 
     /// Returns true if the run goes on from the trusted readings, and is not of a restarted encoder.
     [[nodiscard]] constexpr bool comes_from_trusted(const MotionRun& run, bool expected) const noexcept {
-        return (!time_known_ || connects(trusted_, run)) && (expected || !restarted_at_zero(run));
+        return (!time_known_ || connects(trusted_, run) || comes_from_established(run)) &&
+               (expected || !restarted_at_zero(run));
+    }
+
+    /// Returns whether the trusted readings are so many that no earlier ones count: as long as the silence or
+    /// the jump before them, at most `longest_trial_ns`.
+    [[nodiscard]] constexpr bool is_established() const noexcept {
+        return established_.empty() || trusted_.last().stamp_ns >= established_ns_;
+    }
+
+    /// Returns whether the run goes on from readings that were trusted for longer than the last ones, which
+    /// may have been of a fault.
+    [[nodiscard]] constexpr bool comes_from_established(const MotionRun& run) const noexcept {
+        return !is_established() && !begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
+               tolerance_.reaches(established_.last(), run.first()) &&
+               comparison_.reaches_after_silence(established_, run.first());
+    }
+
+    /// Notes that a run is trusted from here on.
+    constexpr void replace_trusted(const MotionRun& run) noexcept {
+        if (is_established()) {
+            established_ = trusted_;
+        }
+        const std::int64_t silence_ns = run.first().stamp_ns - established_.last().stamp_ns;
+        established_ns_ = run.last().stamp_ns + std::min(silence_ns, longest_trial_ns);
+        trusted_ = run;
+    }
+
+    /// Notes how far the run that begins is from the readings before it; nothing after a silence.
+    constexpr void note_jump() noexcept {
+        const EncoderReading& first = run().first();
+        const MotionRun* before = &trusted_;
+        for (const MotionRun* other : std::array{&std::as_const(refused_), &candidate_.before()}) {
+            const bool later = other->last().stamp_ns > before->last().stamp_ns;
+            before = !other->empty() && later && other->last().stamp_ns < first.stamp_ns ? other : before;
+        }
+        jump_before_rad_ = jump_rad_;
+        jump_ns_ = first.stamp_ns;
+        const MotionLine line = before->end_line(0, config_.period_ns);
+        const bool follows = !before->empty() && comparison_.near(before->last().stamp_ns, first.stamp_ns);
+        jump_rad_ = follows ? first.position_rad - line.at(first.stamp_ns) : 0;
+        jump_error_rad_ =
+            line.span_s > 0
+                ? tolerance_.error(line, seconds_between(line.end_ns, first.stamp_ns), first.step_rad)
+                : tolerance_.reach(seconds_between(line.end_ns, first.stamp_ns), first.step_rad);
+    }
+
+    /// Returns whether a run takes back the jump before, as a bit does that is stuck for a while. An encoder
+    /// that restarts goes to its zero from wherever the joint is.
+    [[nodiscard]] constexpr bool takes_back_jump(const MotionRun& run) const noexcept {
+        const std::int64_t apart_ns = run.first().stamp_ns - jump_ns_;
+        return apart_ns <= config_.max_age_ns && -apart_ns <= config_.max_age_ns &&
+               takes_back(jump_before_rad_);
+    }
+
+    /// Returns whether the last jump is as large as an earlier one, in the other direction.
+    [[nodiscard]] constexpr bool takes_back(double earlier_rad) const noexcept {
+        return magnitude(jump_rad_) > 2 * jump_error_rad_ &&
+               magnitude(jump_rad_ + earlier_rad) <= 2 * jump_error_rad_;
     }
 
     /// Returns whether a joint can have come from the end of one run to the begin of the next.
@@ -219,11 +286,11 @@ class MotionEvidence {
     /// Returns whether a run after a silence begins at the device's zero; a joint that stood there before may
     /// stand there still.
     [[nodiscard]] constexpr bool restarted_at_zero(const MotionRun& run) const noexcept {
-        constexpr double fastest_boot_s = 0.02;
+        constexpr double fastest_boot_s = 0.01;
         const bool long_enough =
             !time_known_ || seconds_between(trusted_.last().stamp_ns, run.first().stamp_ns) >= fastest_boot_s;
         return long_enough && begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
-               !stood_at(run.first());
+               !stood_at(run.first()) && !takes_back_jump(run);
     }
 
     // What MotionGate changes: NOLINTBEGIN(*-non-private-member-variables-in-classes)
@@ -232,6 +299,12 @@ class MotionEvidence {
     RunComparison comparison_;            ///< of runs
     ZeroWatch zero_;                      ///< readings that count from the zero
     MotionRun trusted_;                   ///< the positions of the joint
+    MotionRun established_;               ///< trusted before them, and for longer
+    std::int64_t established_ns_ = 0;     ///< from here on `trusted_` counts alone
+    std::int64_t jump_ns_ = 0;            ///< when the last run began that is not trusted
+    double jump_rad_ = 0;                 ///< from the readings before it; 0: after a silence
+    double jump_before_rad_ = 0;          ///< of the run before
+    double jump_error_rad_ = 0;           ///< largest error of `jump_rad_`
     std::optional<EncoderReading> unfit_; ///< the last reading of a device that was not itself
     bool counts_from_zero_ = false;       ///< readings of unknown time began at the zero, far from the joint
     CandidateRun candidate_;              ///< of readings that qualify

@@ -37,7 +37,7 @@ struct MotionLine {
                                          double jitter_s) const noexcept {
         const double bend = dt_s * dt_s + dt_s * span_s + span_s * span_s / 6; // of the least-squares line
         const double fastest = magnitude(velocity) + acceleration * (dt_s + span_s);
-        return 0.5 * acceleration * bend + 1.2 * (step_rad + fastest * jitter_s) * (1 + 0.5 * dt_s / span_s);
+        return 0.5 * acceleration * bend + (step_rad + fastest * jitter_s) * (1 + 0.5 * dt_s / span_s);
     }
 };
 

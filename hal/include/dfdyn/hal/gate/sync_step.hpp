@@ -112,7 +112,7 @@ class SyncStep {
         earliest_ns_ = usual_ns_ < 0 ? after_ns : std::min(earliest_ns_, after_ns);
         unusual_ = usual ? 0 : std::min(unusual_ + 1, very_many);
         if (usual) {
-            usual_ns_ += (after_ns - usual_ns_) / 8;
+            usual_ns_ += (after_ns - usual_ns_) / 64; // slower than answers of a bus that fills
         } else if (usual_ns_ < 0 || unusual_ == very_many) {
             usual_ns_ = earliest_ns_ = after_ns;
         }

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Joints that are trusted again after a fault has passed, and those that are not.
+#include "dfdyn/hal/gate/motion.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+namespace motion_recovery_test {
+
+using dfdyn::hal::EncoderReading;
+using dfdyn::hal::MotionGate;
+using dfdyn::hal::Reason;
+
+constexpr std::int64_t period = 2'000'000;
+constexpr double zero_rad = 1; ///< where the encoder's own number is 0
+
+double truth(int tick) { return 0.3 + 0.6 * std::sin(4e-3 * tick); }
+
+/// A gate and the readings that it is given.
+struct Watched {
+    MotionGate gate{{.limits = {5, 20},
+                     .range = {-3, 3},
+                     .max_age_ns = 3 * period,
+                     .period_ns = period,
+                     .jitter_ns = period / 10,
+                     .qualification = {.readings = 10, .zero_readings = 1000}}};
+
+    Reason take(int tick, double position_rad) {
+        const EncoderReading reading{.stamp_ns = tick * period,
+                                     .position_rad = position_rad,
+                                     .step_rad = 1e-5,
+                                     .from_zero_rad = position_rad - zero_rad};
+        return gate.take(reading).reason;
+    }
+
+    /// Gives the readings of ticks [from, to), this far from the truth; returns how many were trusted.
+    int trusted(int from, int to, double off_rad = 0) {
+        int count = 0;
+        for (int tick = from; tick < to; ++tick) {
+            count += take(tick, truth(tick) + off_rad) == Reason::ok ? 1 : 0;
+        }
+        return count;
+    }
+};
+
+TEST_CASE("readings that were trusted for a short time only do not outweigh those before") {
+    Watched joint;
+    REQUIRE(joint.trusted(0, 300) == 291);
+    REQUIRE(joint.trusted(400, 440, 0.1) > 0); // after a silence the joint can have gone there
+    CHECK(joint.trusted(440, 600) == 0);       // a jump back: 200 readings are needed
+    CHECK(joint.trusted(600, 700) > 50);
+}
+
+TEST_CASE("readings that were trusted for long outweigh those before") {
+    Watched joint;
+    REQUIRE(joint.trusted(0, 300) == 291);
+    REQUIRE(joint.trusted(400, 800, 0.1) > 300);
+    CHECK(joint.trusted(800, 1400) == 0);
+}
+
+TEST_CASE("a joint that jumps back to its encoder's zero has not restarted there") {
+    int tick = 0;
+    Watched joint;
+    const auto passing = [](int at) { return zero_rad + 1e-3 * (at - 400); };
+    for (; tick < 360; ++tick) {
+        joint.take(tick, passing(tick));
+    }
+    for (; tick < 400; ++tick) { // a bit is stuck until the number changes its sign
+        CHECK(joint.take(tick, passing(tick) - 0.05) != Reason::ok);
+    }
+    Reason last = Reason::ok;
+    for (; tick < 700; ++tick) {
+        last = joint.take(tick, passing(tick));
+    }
+    CHECK(last == Reason::ok);
+}
+
+TEST_CASE("a joint that goes to its encoder's zero from elsewhere has restarted") {
+    int tick = 0;
+    Watched joint;
+    for (; tick < 360; ++tick) {
+        joint.take(tick, zero_rad + 1e-3 * (tick - 400));
+    }
+    for (; tick < 900; ++tick) {
+        CHECK(joint.take(tick, zero_rad + 1e-3 * (tick - 360)) != Reason::ok);
+    }
+}
+
+TEST_CASE("a small jump is followed after 200 readings, also where a reading is missing") {
+    Watched joint;
+    REQUIRE(joint.trusted(0, 300) == 291);
+    CHECK(joint.trusted(302, 480, 0.009) == 0);
+    CHECK(joint.trusted(480, 600, 0.009) > 50);
+}
+
+TEST_CASE("while a joint qualifies, a jump within the velocity limit makes it wait for 200 readings") {
+    Watched joint;
+    REQUIRE(joint.trusted(0, 300) == 291);
+    CHECK(joint.trusted(306, 314) == 0);
+    CHECK(joint.trusted(314, 480, 0.009) == 0);
+}
+
+TEST_CASE("after very many refused readings only a jump to where the joint was brings the position back") {
+    for (const int refused : {300, 1000}) {
+        for (const double left_rad : {0.0, 0.1}) {
+            CAPTURE(refused, left_rad);
+            Watched joint;
+            REQUIRE(joint.trusted(0, 300) == 291);
+            CHECK(joint.trusted(300, 300 + refused, 0.3) == 0);
+            const int trusted = joint.trusted(300 + refused, 800 + refused, left_rad);
+            CHECK((trusted > 0) == (refused < 500 || left_rad == 0));
+        }
+    }
+}
+
+} // namespace motion_recovery_test
