@@ -170,18 +170,21 @@ void BusCheck::take(const StreamClock::Timed& timed) {
     assemble(last_ns_);
 }
 
-/// Finds the busiest windows of time.
+/// Finds the busiest windows of time. Each one begins in the middle of the one before.
 void BusCheck::watch_load(const BusStream* stream, double bits) {
-    constexpr std::int64_t window_ns = 200'000'000;
-    const std::int64_t window = (last_ns_ - first_ns_) / window_ns;
-    window_bits_ = window == window_ ? window_bits_ : Load{};
-    window_ = window;
-    window_bits_.load += bits;
-    window_bits_.unknown += stream != nullptr && !stream->known ? bits : 0;
-    const double possible_bits = bit_rate() * seconds_of(window_ns);
+    constexpr std::int64_t half_ns = 100'000'000;
+    const std::int64_t half = (last_ns_ - first_ns_) / half_ns;
+    if (half != half_) {
+        half_before_ = half == half_ + 1 ? half_bits_ : Load{};
+        half_bits_ = {};
+        half_ = half;
+    }
+    half_bits_.load += bits;
+    half_bits_.unknown += stream != nullptr && !stream->known ? bits : 0;
+    const double possible_bits = 2 * bit_rate() * seconds_of(half_ns);
     if (possible_bits > 0) {
-        peak_.load = std::max(peak_.load, window_bits_.load / possible_bits);
-        peak_.unknown = std::max(peak_.unknown, window_bits_.unknown / possible_bits);
+        peak_.load = std::max(peak_.load, (half_before_.load + half_bits_.load) / possible_bits);
+        peak_.unknown = std::max(peak_.unknown, (half_before_.unknown + half_bits_.unknown) / possible_bits);
     }
 }
 

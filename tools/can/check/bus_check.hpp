@@ -125,9 +125,10 @@ class BusCheck {
     struct Load {
         double load = 0, unknown = 0;
     };
-    Load peak_;                ///< of all windows
-    Load window_bits_;         ///< of the present one
-    std::int64_t window_ = -1; ///< its number
+    Load peak_; ///< of all windows
+    /// Bits of the present half of a window, and of the half before.
+    Load half_bits_, half_before_;
+    std::int64_t half_ = -1; ///< number of the present half
     std::int64_t in_sequence_ns_ = std::numeric_limits<std::int64_t>::min();
     std::int64_t overtaken_ns_ = 0; ///< stamp of the last one that counted
     std::uint64_t overtaken_ = 0;

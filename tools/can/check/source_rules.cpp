@@ -37,6 +37,14 @@ struct Source {
         return ratio() * (1 - static_cast<double>(stream.copies) / static_cast<double>(stream.count));
     }
     double periods(double time_s) const { return time_s * stream.expected_hz; }
+    /// The ratio without the longest pause.
+    double ratio_without_gap() const {
+        const auto all_ns = static_cast<double>(stream.last_ns - stream.first_ns);
+        const double rest_ns = all_ns - static_cast<double>(stream.longest_gap_ns);
+        return rest_ns > 0 ? ratio() * all_ns / rest_ns : ratio();
+    }
+    /// Frames with a wrong stamp are in no place of the sequence, and no silence.
+    double largest_gap_with_strays() const { return largest_gap + static_cast<double>(stream.strays); }
     double gap_periods() const { return periods(1e-9 * static_cast<double>(stream.longest_gap_ns)); }
     double jitter_periods() const { return periods(stream.jitter_s()); }
     bool silent() const { return stream.expected_hz > 0 && stream.count == 0; }
@@ -91,10 +99,10 @@ struct Source {
     bool slow() const { return is_described() && ratio() < least_rate && !loses() && !has_gaps(); }
     /// Returns true if there is a pause that scattered losses do not explain.
     bool has_gaps() const {
-        const bool steady = stream.several ? ratio() >= least_rate : stream.is_regular();
+        const bool steady = stream.several ? ratio_without_gap() >= least_rate : stream.is_regular();
         const bool long_ones = loses() || stream.several || stream.overtaken >= least_overtaken;
         return runs() && !collides() && steady &&
-               gap_periods() > (long_ones ? BusStream::gap_periods : largest_gap);
+               gap_periods() > (long_ones ? BusStream::gap_periods : largest_gap_with_strays());
     }
     bool keeps_rate() const { return runs() && ratio() >= least_rate && ratio() <= largest_rate; }
 };

@@ -21,15 +21,13 @@ std::int64_t difference(std::int64_t a, std::int64_t b) {
 
 std::span<const StreamClock::Timed> StreamClock::take(const hal::Frame& frame) {
     ready_.clear();
-    settle_ahead(frame.stamp_ns);
     const std::int64_t step_ns = difference(sum(frame.stamp_ns, offset_ns_), latest_ns_);
     const std::int64_t mean_ns =
         frames_ > 1 ? (latest_ns_ - first_ns_) / static_cast<std::int64_t>(frames_ - 1) : 0;
+    const std::int64_t usual_ns = frames_ > 1 ? std::max(overtaken_ns, 20 * mean_ns) : least_step_ns;
     if (frames_ == 0 || (step_ns >= -overtaken_ns && step_ns <= std::max(least_step_ns, 20 * mean_ns))) {
         drop_waiting();
-        if (frames_ > 1 && step_ns > std::max(overtaken_ns, 20 * mean_ns)) {
-            ahead_ = frame;
-        } else {
+        if (!waits_ahead(frame, step_ns, usual_ns)) {
             follow(frame);
         }
         return ready_;
@@ -47,9 +45,7 @@ std::span<const StreamClock::Timed> StreamClock::take(const hal::Frame& frame) {
 std::span<const StreamClock::Timed> StreamClock::finish() {
     constexpr std::size_t convincing = 3;
     ready_.clear();
-    if (ahead_) {
-        settle_ahead(ahead_->stamp_ns);
-    }
+    follow_ahead();
     waiting_.size() >= convincing ? adopt() : drop_waiting();
     return ready_;
 }
@@ -59,18 +55,32 @@ std::int64_t StreamClock::time_of(std::int64_t stamp_ns) const noexcept {
     return frames_ == 0 ? time_ns : std::max(time_ns, latest_ns_);
 }
 
-/// Follows the frame that is ahead, or drops it if the next frame does not go on from it.
-void StreamClock::settle_ahead(std::int64_t stamp_ns) {
-    if (!ahead_) {
-        return;
+/// Returns true if the frame waits, or came after a silence and was followed with those that waited.
+bool StreamClock::waits_ahead(const hal::Frame& frame, std::int64_t step_ns, std::int64_t usual_ns) {
+    const bool goes_on =
+        !ahead_.empty() && difference(frame.stamp_ns, ahead_.back().stamp_ns) >= -overtaken_ns;
+    if (!goes_on) { // those that wait were not of a silence
+        for (const hal::Frame& stray : ahead_) {
+            ready_.push_back({stray, true});
+        }
+        strays_ += ahead_.size();
+        ahead_.clear();
     }
-    if (difference(stamp_ns, ahead_->stamp_ns) >= -overtaken_ns) {
-        follow(*ahead_);
-    } else {
-        ready_.push_back({*ahead_, true});
-        ++strays_;
+    if (!goes_on && (frames_ == 0 || step_ns <= usual_ns)) {
+        return false;
     }
-    ahead_.reset();
+    ahead_.push_back(frame);
+    if (ahead_.size() == silent_after) {
+        follow_ahead();
+    }
+    return true;
+}
+
+void StreamClock::follow_ahead() {
+    for (const hal::Frame& frame : ahead_) {
+        follow(frame);
+    }
+    ahead_.clear();
 }
 
 bool StreamClock::goes_on(std::int64_t stamp_ns) const noexcept {
@@ -88,6 +98,7 @@ void StreamClock::follow(hal::Frame frame) {
 
 /// Adopts the new clock. Its first frame is placed one mean interval after the last frame of the old clock.
 void StreamClock::adopt() {
+    follow_ahead();
     const std::int64_t old_ns = sum(waiting_.front().stamp_ns, offset_ns_);
     const std::int64_t mean_ns = difference(waiting_.back().stamp_ns, waiting_.front().stamp_ns) /
                                  static_cast<std::int64_t>(waiting_.size() - 1);

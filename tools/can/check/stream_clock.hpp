@@ -4,7 +4,6 @@
 #include "dfdyn/hal/frame.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,17 +12,19 @@ namespace dfdyn::tools {
 /// Removes jumps from the time stamps of a bus. A clock that was set, or a single wrong time stamp, would
 /// otherwise look like silence, losses or slow sources.
 ///
-/// A frame far ahead of the latest waits for the next one: if that is behind it, its stamp was an outlier.
-/// Frames wait, too, if their time stamps are more than `overtaken_ns` behind the latest, or farther ahead.
-/// If the following frames continue from the old time stamps, it was an outlier. If `adopt_after` frames
-/// continue from the new one, the clock was set, and time continues without the step. In a recording, a
-/// silence of the same length cannot be distinguished from that. Memory: `adopt_after` frames.
+/// Frames far ahead of the latest wait: if one continues from the latest before `silent_after` of them are
+/// there, their stamps were outliers; else there was a silence. Frames wait, too, if their time stamps are
+/// more than `overtaken_ns` behind the latest, or farther ahead. If the following frames continue from the
+/// old time stamps, it was an outlier. If `adopt_after` frames continue from the new one, the clock was set,
+/// and time continues without the step. In a recording, a silence of the same length cannot be distinguished
+/// from that. Memory: `adopt_after` frames.
 class StreamClock {
   public:
     static constexpr std::int64_t overtaken_ns = 5'000'000;
     /// minimum step ahead; 20 mean intervals if that is longer
     static constexpr std::int64_t least_step_ns = 1'500'000'000;
     static constexpr std::size_t adopt_after = 20;
+    static constexpr std::size_t silent_after = 4;
 
     struct Timed {
         hal::Frame frame;   ///< its time stamp has no jumps
@@ -49,9 +50,10 @@ class StreamClock {
     void follow(hal::Frame frame);
     void adopt();
     void drop_waiting();
-    void settle_ahead(std::int64_t stamp_ns);
+    bool waits_ahead(const hal::Frame& frame, std::int64_t step_ns, std::int64_t usual_ns);
+    void follow_ahead();
 
-    std::optional<hal::Frame> ahead_;
+    std::vector<hal::Frame> ahead_; ///< after a step ahead, until it is known to be a silence
     std::vector<hal::Frame> waiting_;
     std::vector<Timed> ready_;
     std::int64_t offset_ns_ = 0;

@@ -124,6 +124,7 @@ void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, d
     const double step_s = seconds_of(step_ns);
     const bool far = std::abs(step_rad) > few_counts * smallest_step_rad_;
     const bool thaws = is_long() && far && std::abs(step_rad) / step_s > limits_.acceleration * step_s;
+    settle_thaw(value);
     const bool jump = !thaws && (jumped(step_ns, step_rad) || restarts(value, step_ns, step_rad));
     if (jump) {
         note_jump(value, value.position_rad - step_rad + last_speed_rad_per_s_ * mean_interval_s(),
@@ -143,7 +144,8 @@ void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, d
     }
     smallest_step_rad_ = std::min(smallest_step_rad_, std::abs(step_rad));
     if (thaws) {
-        frozen_positions_ += equal_;
+        thawed_ = equal_;
+        thawed_from_rad_ = value.position_rad - step_rad;
     } else {
         frozen_positions_ += pending_frozen();
         count_jump(jump, step_rad);
@@ -154,6 +156,18 @@ void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, d
     last_speed_rad_per_s_ = jump ? 0 : step_rad / changed_s;
     speed_rad_per_s_ = jump ? 0 : speed_rad_per_s_ + 0.3 * (last_speed_rad_per_s_ - speed_rad_per_s_);
     equal_ = 0;
+}
+
+/// Decides whether the positions before the last step were frozen. Where the next position is back there, a
+/// bit flipped while the joint was at rest.
+void ValueWatch::settle_thaw(const hal::JointValue& value) {
+    const double back_rad = std::abs(value.position_rad - thawed_from_rad_);
+    if (thawed_ > 0 && value.position_rad != position_before_rad_) {
+        const bool back = back_rad < 0.5 * std::abs(position_before_rad_ - thawed_from_rad_);
+        frozen_positions_ += back ? 0 : thawed_;
+        thawed_ = 0;
+    }
+    position_before_rad_ = value.position_rad;
 }
 
 /// Number of whole turns of the encoder; 0 for steps that are not whole turns.

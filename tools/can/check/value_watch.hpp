@@ -35,7 +35,7 @@ class ValueWatch {
     /// Number of positions of exactly 0 counts that are far from the preceding positions.
     std::uint64_t zeros() const noexcept { return zeros_; }
     /// Number of repeated positions after an impossibly sudden stop of the joint, or before a jump.
-    std::uint64_t frozen_positions() const noexcept { return frozen_positions_ + pending_frozen(); }
+    std::uint64_t frozen_positions() const noexcept { return frozen_positions_ + thawed_ + pending_frozen(); }
     /// Number of repeated efforts while the joint moved.
     std::uint64_t frozen_efforts() const noexcept { return frozen_efforts_; }
     /// Number of efforts at an end of their range.
@@ -57,6 +57,7 @@ class ValueWatch {
     void count_jump(bool jump, double step_rad);
     double stop_within(double step_s) const;
     bool is_long() const noexcept;
+    void settle_thaw(const hal::JointValue& value);
     void take_effort(const hal::JointValue& value);
     std::uint64_t pending_frozen() const noexcept;
 
@@ -86,6 +87,8 @@ class ValueWatch {
     std::uint64_t equal_ = 0;        ///< number of consecutive positions equal to the previous one
     std::int64_t equal_from_ns_ = 0; ///< start of that run
     std::uint64_t frozen_positions_ = 0;
+    std::uint64_t thawed_ = 0; ///< equal positions before the last step, if that ended a freeze
+    double thawed_from_rad_ = 0, position_before_rad_ = 0;
 
     bool effort_started_ = false;
     double effort_ = 0;

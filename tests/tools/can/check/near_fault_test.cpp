@@ -164,4 +164,33 @@ TEST_CASE("buscheck finds late frames of a joint although other frames were read
     CHECK(rules(bus, frames) == Names{"frames_overtaken", "late_frames"});
 }
 
+TEST_CASE("buscheck takes two wrong stamps in a row for no silence") {
+    const BusDescription bus = drives();
+    Frames frames = sound(bus);
+    frames[frames.size() / 2].stamp_ns += 40'000'000;
+    frames[frames.size() / 2 + 1].stamp_ns += 700'000'000;
+    CHECK(rules(bus, frames) == Names{"clock_jumped"});
+}
+
+TEST_CASE("buscheck takes flipped bits of a joint at rest for no frozen encoder") {
+    const BusDescription bus = drives();
+    int number = 0;
+    const Frames frames = with_positions(
+        sound(bus), [&](double, std::int32_t) { return 1000 + (++number % 300 == 0 ? 1 << 16 : 0); });
+    CHECK(rules(bus, frames) == Names{"bits_flipped"});
+}
+
+TEST_CASE("buscheck finds a babbling node whenever it begins") {
+    const BusDescription bus = drives();
+    for (const double begin_s : {1.0, 1.05, 1.1, 1.15}) {
+        CAPTURE(begin_s);
+        Frames frames = sound(bus);
+        for (int i = 0; i < 500; ++i) { // 0.2 s, 33 % of the bit rate
+            frames.push_back(hal::make_frame(0x7A0, 8));
+            frames.back().stamp_ns = frames.front().stamp_ns + std::llround(1e9 * begin_s) + i * 400'000;
+        }
+        CHECK(rules(bus, changed(frames, [](Frame&) {})).count("unknown_traffic") == 1);
+    }
+}
+
 } // namespace bus_check_near_fault_test
