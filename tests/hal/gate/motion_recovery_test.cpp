@@ -101,16 +101,34 @@ TEST_CASE("while a joint qualifies, a jump within the velocity limit makes it wa
 }
 
 TEST_CASE("after very many refused readings only a jump to where the joint was brings the position back") {
-    for (const int refused : {300, 1000}) {
+    for (const int refused : {300, 320, 450, 490, 510, 1000}) {
         for (const double left_rad : {0.0, 0.1}) {
             CAPTURE(refused, left_rad);
             Watched joint;
             REQUIRE(joint.trusted(0, 300) == 291);
             CHECK(joint.trusted(300, 300 + refused, 0.3) == 0);
-            const int trusted = joint.trusted(300 + refused, 800 + refused, left_rad);
-            CHECK((trusted > 0) == (refused < 500 || left_rad == 0));
+            const int trusted = joint.trusted(300 + refused, 1000 + refused, left_rad);
+            CHECK((trusted > 400) == (refused < 500 || left_rad == 0));
+            CHECK((trusted == 0) == (refused >= 500 && left_rad != 0));
         }
     }
+}
+
+TEST_CASE(
+    "after very many refused readings that began with a silence a jump to where the joint can be counts") {
+    Watched joint;
+    REQUIRE(joint.trusted(0, 300) == 291);
+    CHECK(joint.trusted(310, 1000, 1) == 0);
+    CHECK(joint.trusted(1000, 1400) > 100);
+}
+
+TEST_CASE("the jump that is to be taken back is that of this loss, also where it led beyond the range") {
+    Watched joint;
+    REQUIRE(joint.trusted(0, 300) == 291);
+    CHECK(joint.trusted(300, 340, 0.3) == 0);
+    REQUIRE(joint.trusted(340, 1570) > 1000);
+    CHECK(joint.trusted(1570, 2180, 2.69) == 0); // beyond 3 rad after five readings
+    CHECK(joint.trusted(2180, 2600) > 100);
 }
 
 } // namespace motion_recovery_test

@@ -143,8 +143,8 @@ class MotionGate : private MotionEvidence {
         const MotionRun& counted = zero_.counted();
         if (!zero_lost_ && !trusted_.empty() && counted.readings() >= 2 * config_.qualification.readings &&
             !counted.still() && restarted_at_zero(counted)) {
+            begin_loss(MotionRun(counted));
             zero_lost_ = true;
-            refused_ = counted;
         }
     }
 
@@ -154,6 +154,7 @@ class MotionGate : private MotionEvidence {
         }
         if (lost() && still_lost(reading)) {
             candidate_.interrupt();
+            count_lost(1);
             if (jumped_little() && refused_.readings() >= most_readings()) {
                 believe(MotionRun(refused_));
             }
@@ -206,13 +207,12 @@ class MotionGate : private MotionEvidence {
 
     constexpr Verdict refuse(const EncoderReading& reading, Reason reason) noexcept {
         ++refusals_;
-        lost_readings_ = lost() ? std::min(lost_readings_ + 1, lost_for_good()) : 0;
         return {reason, reading.position_rad};
     }
 
     constexpr Verdict take_beyond_range(const EncoderReading& reading) noexcept {
         if (comparison_.continues(run(), reading)) { // it is no better when it comes back, or round
-            refused_ = run();
+            begin_loss(run());
             refused_.extend(reading, tolerance_);
         }
         candidate_.interrupt();
@@ -223,7 +223,7 @@ class MotionGate : private MotionEvidence {
 
     constexpr Verdict trust(const EncoderReading& reading) noexcept {
         trusted_.extend(reading, tolerance_);
-        refused_ = {};
+        end_loss();
         disturbed_ = false;
         return settled(reading);
     }
@@ -242,8 +242,7 @@ class MotionGate : private MotionEvidence {
         candidate_.clear();
         unfit_.reset();
         counts_from_zero_ = false;
-        refused_ = {};
-        lost_readings_ = 0;
+        end_loss();
         interrupted_ = false;
         disturbed_ = false;
         time_known_ = true;
@@ -277,9 +276,8 @@ class MotionGate : private MotionEvidence {
         if (!enough && !stands_at_zero) {
             return refuse(reading, reason);
         }
-        if (!trusted_.empty() &&
-            (!comes_from_trusted(run(), expected_) || (has_lost_zero() && goes_on_from_refused(run())) ||
-             (lost_readings_ == lost_for_good() && !takes_back(lost_jump_rad_)))) {
+        if (!trusted_.empty() && (!comes_from_trusted(run(), expected_) ||
+                                  (has_lost_zero() && goes_on_from_refused(run())) || stays_elsewhere())) {
             return lose(reading);
         }
         return run().readings() >= needed_readings() || stands_at_zero ? settle(reading)
@@ -294,21 +292,43 @@ class MotionGate : private MotionEvidence {
 
     /// Refuses the run that ends with this reading, and what goes on from it.
     constexpr Verdict lose(const EncoderReading& reading) noexcept {
-        lost_jump_rad_ = lost() ? lost_jump_rad_ : jump_rad_;
         const bool new_here = !lost() || !connects(refused_, run());
         const bool at_zero =
             begins_at_zero(run().first(), run().begin_line(0, config_.period_ns)) && !takes_back_jump(run());
         zero_lost_ = at_zero || (zero_lost_ && !new_here);
-        refused_ = run();
+        begin_loss(run());
         candidate_.interrupt();
         return refuse(reading, Reason::position_lost);
     }
 
-    /// Readings after which being within the limits is no evidence: they allow any position.
+    /// Refuses a run, and what goes on from it. While the joint is lost already, the loss goes on.
+    constexpr void begin_loss(const MotionRun& run) noexcept {
+        if (!lost()) {
+            lost_jump_rad_ = magnitude(jump_rad_) > 2 * jump_error_rad_ ? jump_rad_ : 0;
+        }
+        refused_ = run;
+        count_lost(run.readings());
+    }
+    constexpr void end_loss() noexcept {
+        refused_ = {};
+        lost_readings_ = 0;
+        lost_jump_rad_ = 0;
+    }
+    constexpr void count_lost(int readings) noexcept {
+        lost_readings_ = std::min(lost_readings_ + std::min(readings, lost_for_good()), lost_for_good());
+    }
+
+    /// Returns whether the joint is lost for so long that the limits allow any position, and the run does not
+    /// take back the jump with which that began.
+    [[nodiscard]] constexpr bool stays_elsewhere() const noexcept {
+        return lost_readings_ == lost_for_good() && lost_jump_rad_ != 0 && !takes_back(lost_jump_rad_);
+    }
+
+    /// Readings after which being within the limits is no evidence.
     [[nodiscard]] constexpr int lost_for_good() const noexcept { return 50 * config_.qualification.readings; }
 
-    int lost_readings_ = 0;    ///< refused one after the other
-    double lost_jump_rad_ = 0; ///< with which they began
+    int lost_readings_ = 0;    ///< that go on from those that are refused
+    double lost_jump_rad_ = 0; ///< with which they began; 0: with a silence
     std::uint8_t off_ = 0;     ///< which of the last eight readings led from no other, a bit each
     std::uint64_t refusals_ = 0;
     std::uint64_t restarts_ = 0;
