@@ -46,9 +46,20 @@ struct Watched {
 TEST_CASE("readings that were trusted for a short time only do not outweigh those before") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
-    REQUIRE(joint.trusted(400, 440, 0.1) > 0); // after a silence the joint can have gone there
+    REQUIRE(joint.trusted(400, 440, 0.3) > 0); // after a silence the joint can have gone there
     CHECK(joint.trusted(440, 600) == 0);       // a jump back: 200 readings are needed
     CHECK(joint.trusted(600, 700) > 50);
+}
+
+TEST_CASE("a jump soon after a silence is no better for what was trusted before the silence") {
+    for (const double jump_rad : {0.1, -0.1, 0.3}) {
+        CAPTURE(jump_rad);
+        Watched joint;
+        REQUIRE(joint.trusted(0, 300) == 291);
+        REQUIRE(joint.trusted(400, 450) > 30);
+        CHECK(joint.trusted(450, 750, jump_rad) == 0); // a bit is stuck
+        CHECK(joint.trusted(750, 1100) > 100);
+    }
 }
 
 TEST_CASE("readings that were trusted for long outweigh those before") {
@@ -84,6 +95,43 @@ TEST_CASE("a joint that goes to its encoder's zero from elsewhere has restarted"
     for (; tick < 900; ++tick) {
         CHECK(joint.take(tick, zero_rad + 1e-3 * (tick - 360)) != Reason::ok);
     }
+}
+
+TEST_CASE("a restart is none that takes back a jump of minutes before") {
+    const auto truth_rad = [](int tick) { return zero_rad + 0.05 + 0.01 * std::sin(0.02 * tick); };
+    constexpr int restart = 62832; // 200 turns of the sine
+    Watched joint;
+    int trusted = 0;
+    for (int tick = 0; tick < restart; ++tick) {
+        const bool zeros = tick >= 588 && tick < 628;
+        trusted += joint.take(tick, zeros ? zero_rad : truth_rad(tick)) == Reason::ok ? 1 : 0;
+    }
+    REQUIRE(trusted > restart - 300);
+    for (int tick = restart; tick < restart + 600; ++tick) {
+        if (tick < restart + 50 || tick >= restart + 150) { // the silence would let it come back
+            CHECK(joint.take(tick, zero_rad + truth_rad(tick) - truth_rad(restart)) != Reason::ok);
+        }
+    }
+}
+
+TEST_CASE("at 100 Hz the time from one reading to the next is no restart") {
+    constexpr std::int64_t period_100_hz = 10'000'000;
+    MotionGate gate({.limits = {5, 20},
+                     .range = {-4, 4},
+                     .max_age_ns = 3 * period_100_hz,
+                     .period_ns = period_100_hz,
+                     .jitter_ns = period_100_hz / 10,
+                     .qualification = {.readings = 10, .zero_readings = 1000}});
+    Reason last = Reason::qualifying;
+    for (int tick = -100; tick < 300; ++tick) { // hits something at its encoder's zero
+        const double from_zero_rad = -1e-2 * std::abs(tick);
+        last = gate.take({.stamp_ns = (tick + 100) * period_100_hz,
+                          .position_rad = zero_rad + from_zero_rad,
+                          .step_rad = 1e-5,
+                          .from_zero_rad = from_zero_rad})
+                   .reason;
+    }
+    CHECK(last == Reason::ok);
 }
 
 TEST_CASE("a small jump is followed after 200 readings, also where a reading is missing") {

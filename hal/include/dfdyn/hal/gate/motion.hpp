@@ -31,7 +31,8 @@ namespace dfdyn::hal {
 ///   a period or two. After fifty times as many readings the limits allow any position: then only a jump ends
 ///   it that takes back the first one, or the program's restart.
 /// - A position that has been trusted again for a shorter time than the silence or the jump before it lasted
-///   (at most 0.4 s) may be the wrong one: a run that connects with what was trusted before is as good.
+///   (at most 0.4 s) may be the wrong one. A run is as good that connects with what was trusted before and
+///   begins with a jump that takes back most of the way from there.
 /// - A run at the device's zero that takes back the jump before it is of a bit that was stuck, not of a
 ///   restart.
 /// - A moving joint that repeats its last reading, bit for bit, where it cannot have stopped, is frozen until
@@ -313,6 +314,7 @@ class MotionGate : private MotionEvidence {
         refused_ = {};
         lost_readings_ = 0;
         lost_jump_rad_ = 0;
+        forget_jumps();
     }
     constexpr void count_lost(int readings) noexcept {
         lost_readings_ = std::min(lost_readings_ + std::min(readings, lost_for_good()), lost_for_good());

@@ -97,6 +97,9 @@ class MotionEvidence {
         const EncoderReading& from = trusted_.last();
         const EncoderReading& to = refused_.first();
         const std::int64_t apart_ns = to.stamp_ns - from.stamp_ns;
+        if (apart_ns <= 0) {
+            return false;
+        }
         const std::int64_t period_ns = config_.period_ns > 0 ? config_.period_ns : apart_ns;
         const double dt_s = seconds_between(0, std::clamp(apart_ns, period_ns, 2 * period_ns));
         return !zero_lost_ && recently(from.stamp_ns, to.stamp_ns) &&
@@ -187,9 +190,17 @@ class MotionEvidence {
     }
 
     /// Returns whether the run goes on from readings that were trusted for longer than the last ones, which
-    /// may have been of a fault.
+    /// may have been of a fault: it begins soon after them, with a jump that takes back most of their way off
+    /// the line of the earlier ones.
     [[nodiscard]] constexpr bool comes_from_established(const MotionRun& run) const noexcept {
-        return !is_established() && !begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
+        constexpr double most_left = 0.5;
+        const MotionLine before = established_.end_line(0, config_.period_ns);
+        const MotionLine last = trusted_.end_line(0, config_.period_ns);
+        const double off_rad = trusted_.first().position_rad - before.at(trusted_.first().stamp_ns);
+        const double back_rad = run.first().position_rad - last.at(run.first().stamp_ns);
+        return !is_established() && run.first().stamp_ns < established_ns_ &&
+               magnitude(off_rad + back_rad) <= most_left * magnitude(off_rad) &&
+               !begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
                tolerance_.reaches(established_.last(), run.first()) &&
                comparison_.reaches_after_silence(established_, run.first());
     }
@@ -213,6 +224,7 @@ class MotionEvidence {
             before = !other->empty() && later && other->last().stamp_ns < first.stamp_ns ? other : before;
         }
         jump_before_rad_ = jump_rad_;
+        jump_before_ns_ = jump_ns_;
         jump_ns_ = first.stamp_ns;
         const MotionLine line = before->end_line(0, config_.period_ns);
         const bool follows = !before->empty() && comparison_.near(before->last().stamp_ns, first.stamp_ns);
@@ -223,12 +235,15 @@ class MotionEvidence {
                 : tolerance_.reach(seconds_between(line.end_ns, first.stamp_ns), first.step_rad);
     }
 
-    /// Returns whether a run takes back the jump before, as a bit does that is stuck for a while. An encoder
-    /// that restarts goes to its zero from wherever the joint is.
+    /// What jumped before says nothing any more: a reading is trusted.
+    constexpr void forget_jumps() noexcept { jump_rad_ = jump_before_rad_ = 0; }
+
+    /// Returns whether a run takes back the jump shortly before, as a bit does that is stuck for a while. An
+    /// encoder that restarts goes to its zero from wherever the joint is.
     [[nodiscard]] constexpr bool takes_back_jump(const MotionRun& run) const noexcept {
         const std::int64_t apart_ns = run.first().stamp_ns - jump_ns_;
         return apart_ns <= config_.max_age_ns && -apart_ns <= config_.max_age_ns &&
-               takes_back(jump_before_rad_);
+               run.first().stamp_ns - jump_before_ns_ <= longest_trial_ns && takes_back(jump_before_rad_);
     }
 
     /// Returns whether the last jump is as large as an earlier one, in the other direction.
@@ -286,7 +301,7 @@ class MotionEvidence {
     /// Returns whether a run after a silence begins at the device's zero; a joint that stood there before may
     /// stand there still.
     [[nodiscard]] constexpr bool restarted_at_zero(const MotionRun& run) const noexcept {
-        constexpr double fastest_boot_s = 0.01;
+        const double fastest_boot_s = std::max(0.01, 2 * seconds_between(0, config_.period_ns));
         const bool long_enough =
             !time_known_ || seconds_between(trusted_.last().stamp_ns, run.first().stamp_ns) >= fastest_boot_s;
         return long_enough && begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
@@ -304,6 +319,7 @@ class MotionEvidence {
     std::int64_t jump_ns_ = 0;            ///< when the last run began that is not trusted
     double jump_rad_ = 0;                 ///< from the readings before it; 0: after a silence
     double jump_before_rad_ = 0;          ///< of the run before
+    std::int64_t jump_before_ns_ = 0;     ///< when that run began
     double jump_error_rad_ = 0;           ///< largest error of `jump_rad_`
     std::optional<EncoderReading> unfit_; ///< the last reading of a device that was not itself
     bool counts_from_zero_ = false;       ///< readings of unknown time began at the zero, far from the joint
