@@ -51,4 +51,21 @@ TEST_CASE("the device's resolution is learned at rest too, where the effort chan
     CHECK(accepted < 20);
 }
 
+TEST_CASE("a device that holds its values in motion, but not at rest, is not refused for ever") {
+    FrozenEffortGate gate(100);
+    for (int tick = 0; tick < 200; ++tick) {
+        CHECK_FALSE(gate.frozen(0.01 * (tick % 3), 0.5));
+    }
+    int late = 0;
+    for (int tick = 0; tick < 2000; ++tick) {
+        const bool frozen = gate.frozen(0.5 * (tick / 10 % 7), position(tick));
+        late += frozen && tick >= 400 ? 1 : 0;
+    }
+    CHECK(late == 0);
+    for (int tick = 0; tick < 90; ++tick) { // and a frozen one is still found early
+        late += gate.frozen(9, position(2000 + tick)) ? 1 : 0;
+    }
+    CHECK(late > 50);
+}
+
 } // namespace frozen_effort_test

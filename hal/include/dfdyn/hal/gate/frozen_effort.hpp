@@ -43,7 +43,8 @@ class FrozenEffortGate {
         if (run_ > 0) {
             smallest_change_ = smallest_change_ > 0 ? std::min(smallest_change_, change) : change;
             const bool moved = magnitude(position_rad - begin_rad_) > motion_of_a_value_rad;
-            const bool smooth = !frozen_ || change <= 3 * smallest_change_;
+            const bool learning = learned_ < enough && run_ < limit_;
+            const bool smooth = learning || !frozen_ || change <= 3 * smallest_change_;
             longest_ = moved && smooth ? std::max(longest_, run_) : longest_;
             learned_ = std::min(learned_ + (moved ? 1 : 0), enough);
             longest_of_all_ = smooth ? std::max(longest_of_all_, run_) : longest_of_all_;
