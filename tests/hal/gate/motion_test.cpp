@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/hal/gate/motion.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
 
 #include <cmath>
+#include <random>
 
 namespace motion_test {
 
@@ -267,6 +269,28 @@ TEST_CASE("a small jump does not bring a lost zero back") {
     MotionGate gate = ready_gate();
     CHECK(follow(gate, 20, 600, 0.5) == Reason::position_lost);
     CHECK(follow(gate, 600, 1200, 0.506) == Reason::position_lost);
+}
+
+TEST_CASE("a joint at rest between two counts of 14 bits at 1 kHz does not jump") {
+    constexpr double coarse_rad = 6.283185 / (1 << 14);
+    MotionGate gate({.limits = {5, 20},
+                     .range = {-3, 3},
+                     .max_age_ns = 3 * ms,
+                     .period_ns = ms,
+                     .jitter_ns = 0,
+                     .qualification = {.readings = 10, .zero_readings = 1000}});
+    DFDYN_SEEDED_ENGINE(engine);
+    std::bernoulli_distribution next(0.5);
+    int refused = 0;
+    for (int tick = 0; tick < 2000; ++tick) {
+        const double position_rad = next(engine) ? coarse_rad : 0;
+        const EncoderReading dithered{.stamp_ns = tick * ms,
+                                      .position_rad = position_rad,
+                                      .step_rad = coarse_rad,
+                                      .from_zero_rad = position_rad + 1};
+        refused += gate.take(dithered).reason != Reason::ok ? 1 : 0;
+    }
+    CHECK(refused == 9);
 }
 
 } // namespace motion_test
