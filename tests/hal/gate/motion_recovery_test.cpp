@@ -146,6 +146,7 @@ TEST_CASE("while a joint qualifies, a jump within the velocity limit makes it wa
     REQUIRE(joint.trusted(0, 300) == 291);
     CHECK(joint.trusted(306, 314) == 0);
     CHECK(joint.trusted(314, 480, 0.009) == 0);
+    CHECK(joint.trusted(480, 600, 0.009) > 0);
 }
 
 TEST_CASE("after very many refused readings only a jump to where the joint was brings the position back") {

@@ -3,6 +3,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/can/check/bus_check.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -43,8 +44,10 @@ struct Source {
         const double rest_ns = all_ns - static_cast<double>(stream.longest_gap_ns);
         return rest_ns > 0 ? ratio() * all_ns / rest_ns : ratio();
     }
-    /// Frames with a wrong stamp are in no place of the sequence, and no silence.
-    double largest_gap_with_strays() const { return largest_gap + static_cast<double>(stream.strays); }
+    /// A few frames with a wrong stamp are in no place of the sequence, and no silence.
+    double largest_gap_with_strays() const {
+        return std::min(largest_gap + static_cast<double>(stream.strays), BusStream::gap_periods);
+    }
     double gap_periods() const { return periods(1e-9 * static_cast<double>(stream.longest_gap_ns)); }
     double jitter_periods() const { return periods(stream.jitter_s()); }
     bool silent() const { return stream.expected_hz > 0 && stream.count == 0; }

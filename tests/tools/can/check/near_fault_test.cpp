@@ -172,6 +172,22 @@ TEST_CASE("buscheck takes two wrong stamps in a row for no silence") {
     CHECK(rules(bus, frames) == Names{"clock_jumped"});
 }
 
+TEST_CASE("buscheck finds the pause of a source that has many wrong time stamps") {
+    const BusDescription bus = drives();
+    int number = 0;
+    Frames frames = without(sound(bus), [&](const Frame& frame) {
+        number += frame.id == 0x281 ? 1 : 0;
+        return frame.id == 0x281 && number > 200 && number <= 215;
+    });
+    int strays = 0;
+    for (Frame& frame : frames) {
+        if (frame.id == 0x281 && ++strays % 25 == 0) {
+            frame.stamp_ns -= 3'600'000'000'000;
+        }
+    }
+    CHECK(rules(bus, frames) == Names{"clock_jumped", "gaps"});
+}
+
 TEST_CASE("buscheck takes flipped bits of a joint at rest for no frozen encoder") {
     const BusDescription bus = drives();
     int number = 0;
