@@ -28,6 +28,20 @@ TEST_CASE("a lost answer does not refuse later answers at the usual time") {
     CHECK(step.answer(51 * period + 420 * us));
 }
 
+TEST_CASE("answers that came later while the bus was full do not become the usual time") {
+    SyncStep step = running(50);
+    int cycle = 50;
+    for (; cycle < 80; ++cycle) {
+        step.sync(cycle * period);
+        CHECK(step.answer(cycle * period + (400 + 20 * (cycle - 50)) * us));
+    }
+    step.sync(cycle++ * period); // its answer is lost
+    for (; cycle < 120; ++cycle) {
+        step.sync(cycle * period);
+        CHECK(step.answer(cycle * period + 400 * us));
+    }
+}
+
 TEST_CASE("an answer stamped before its SYNC is not in step, and teaches no time") {
     SyncStep step = running(50);
     step.sync(50 * period + 3000 * us); // a stamp ahead
