@@ -192,7 +192,7 @@ TEST_CASE("where one learner has no prediction the other one's is used at once")
         ToldLearner& used = first_is_used ? run.first : run.second;
         ToldLearner& other = first_is_used ? run.second : run.first;
         used.forecast = 50;
-        other.forecast = 0;
+        other.forecast = 52;
         run.go(3);
         other.forecast = 50;
         used.knows = false;
@@ -204,8 +204,7 @@ TEST_CASE("where one learner has no prediction the other one's is used at once")
     }
 }
 
-TEST_CASE(
-    "learners with different numbers of forecasts form a pair, and known forecasts stand for unknown ones") {
+TEST_CASE("learners with different numbers of forecasts form a pair, and unknown forecasts are NaN") {
     ToldLearner first, second, third;
     using Two = LearnerPair<ToldLearner, ToldLearner>;
     Two two(first, second);
@@ -216,19 +215,41 @@ TEST_CASE(
     third.forecast = 3;
     constexpr double position = 0;
     std::array<double, 4> torque{0, 0, 0, -7}; // the last value is not a forecast
+    constexpr double unknown = -1;             // stands for NaN, which equals nothing
     const auto predicted = [&](auto& pair) {
         CHECK(pair.predict(0, &position, torque.data()));
+        std::ranges::replace_if(
+            torque, [](double value) { return std::isnan(value); }, unknown);
         return torque;
     };
     CHECK(predicted(three) == std::array<double, 4>{1, 2, 3, -7});
     CHECK(predicted(reversed) == std::array<double, 4>{3, 1, 2, -7});
     third.knows = false;
-    CHECK(predicted(three) == std::array<double, 4>{1, 2, 1, -7});
-    CHECK(predicted(reversed) == std::array<double, 4>{1, 1, 2, -7});
+    CHECK(predicted(three) == std::array<double, 4>{1, 2, unknown, -7});
+    CHECK(predicted(reversed) == std::array<double, 4>{unknown, 1, 2, -7});
     third.knows = true;
     first.knows = second.knows = false;
-    CHECK(predicted(three) == std::array<double, 4>{3, 3, 3, -7});
-    CHECK(predicted(reversed) == std::array<double, 4>{3, 3, 3, -7});
+    CHECK(predicted(three) == std::array<double, 4>{unknown, unknown, 3, -7});
+    CHECK(predicted(reversed) == std::array<double, 4>{3, unknown, unknown, -7});
+}
+
+TEST_CASE("a learner without a prediction does not earn the reputation of the other one") {
+    PairRun run;
+    run.first.forecast = 50;
+    run.second.knows = false;
+    run.go(3);
+    run.second.knows = true;
+    run.second.forecast = -30;
+    run.go(0.05);
+    CHECK(run.last == Approx(50).margin(1)); // with equal shares it would be 10
+}
+
+TEST_CASE("a wrong learner has no larger share because another one has no prediction") {
+    PairRun run;
+    run.first.forecast = -30; // an error of 80 N·m; that of the nominal torque is 40
+    run.second.knows = false;
+    run.go(3);
+    CHECK(run.forward.share()[0] < 0.1);
 }
 
 TEST_CASE("other forecasts are combined with the shares of the command's") {

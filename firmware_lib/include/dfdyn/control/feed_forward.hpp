@@ -9,11 +9,12 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <optional>
 
 namespace dfdyn {
 
 /// A learner that `FeedForward` can use; `LearnedTorque` documents the calls. `predict` writes
-/// `forecast_count()` forecasts of n torques, one after the other.
+/// `forecast_count()` forecasts of n torques, one after the other; NaN for a forecast that is unknown.
 template <class L>
 concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename L::Scalar* values,
                                  typename L::Scalar* torque) {
@@ -43,6 +44,9 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 /// before it is compared: its slow part, as far as the observer's limit reaches, counts with the share
 /// `slow_share` only. Errors beyond ± `limit` count as `limit`, and slow parts fade while nothing is
 /// compared, so one absurd forecast is forgotten within the memory.
+///
+/// A forecast that is unknown is left out, and the known ones are used in its place. It earns no more than
+/// the nominal torque does: its error counts as that of the nominal torque.
 ///
 /// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`, and the
 /// shares of the forecasts within it change in `fall_s`. It adds at most `cap` to the nominal torque and
@@ -141,7 +145,8 @@ class FeedForward {
             if (since_knot == 0) {
                 compared_[k] = known_nominal;
                 for (int i = k; i < from_.size(); i += joints_) {
-                    compared_[joints_ + i] = from_[i] + way * (to_[i] - from_[i]);
+                    const Scalar forecast = from_[i] + way * (to_[i] - from_[i]);
+                    compared_[joints_ + i] = std::isfinite(forecast) ? forecast : known_nominal;
                 }
             }
             torque_[k] = with_learned(k, known_nominal, way);
@@ -191,13 +196,10 @@ class FeedForward {
 
     /// Combines other forecasts (`forecast_count()` times n values, one forecast after the other) into n
     /// learned torques, as the present command combines its own: for example forecasts of the arm at rest,
-    /// to hold it after a stop.
+    /// to hold it after a stop. Unknown forecasts (NaN) are left out; without a known one the result is 0.
     void combine(const Scalar* other, Scalar* torque) const noexcept {
         for (int k = 0; k < joints_; ++k) {
-            torque[k] = 0;
-            for (int i = k; i < mix_.size(); i += joints_) {
-                torque[k] += mix_[i] * other[i];
-            }
+            torque[k] = combined(k, [other](int i) { return other[i]; }).value_or(Scalar(0));
         }
     }
 
@@ -210,7 +212,7 @@ class FeedForward {
     /// `at_knot`: in a tick with a knot; otherwise between knots.
     [[nodiscard]] std::int64_t cost(bool at_knot) const noexcept {
         const std::int64_t of_learner = from_.size();
-        const std::int64_t between = 1 + 10 * joints_ + 5 * of_learner;
+        const std::int64_t between = 1 + 10 * joints_ + 6 * of_learner;
         const Cost compare = Combination::cost(extent<sum(forecasts, 1)>(forecast_count_ + 1), joints_);
         return between + (at_knot ? 5 * joints_ + of_learner + 3 * compared_.size() + compare.learn : 0);
     }
@@ -246,10 +248,35 @@ class FeedForward {
         next_known_ = learner_->predict(knot_ns_, ahead_.data(), to_.data());
     }
 
-    /// Returns the share that the forecast combination assigns to all forecasts of the learner.
+    /// Least share of a known forecast, so that it can be used when better ones become unknown.
+    static constexpr Scalar least_mix = Scalar(1e-6);
+
+    /// Combines the finite ones of joint `k`'s forecasts `value(i)` by their shares.
+    template <class Value>
+    [[nodiscard]] std::optional<Scalar> combined(int k, const Value& value) const noexcept {
+        Scalar sum = 0;
+        Scalar total = 0;
+        for (int i = k; i < mix_.size(); i += joints_) {
+            const Scalar forecast = value(i);
+            if (std::isfinite(forecast)) {
+                const Scalar share = std::max(mix_[i], least_mix);
+                sum += share * forecast;
+                total += share;
+            }
+        }
+        return total > 0 ? std::optional<Scalar>(sum / total) : std::nullopt;
+    }
+
+    /// Returns the share that the forecast combination assigns to the known forecasts of the learner, beside
+    /// the nominal torque.
     [[nodiscard]] Scalar earned_share(int k) const noexcept {
         const bool trusted = enabled_ && known_ && next_known_ && judged_ >= judged_for_;
-        return trusted ? 1 - combination_.weights()[k] : Scalar(0);
+        const Scalar* const weights = combination_.weights();
+        Scalar total = 0;
+        for (int i = k; trusted && i < mix_.size(); i += joints_) {
+            total += std::isfinite(from_[i]) && std::isfinite(to_[i]) ? weights[joints_ + i] : Scalar(0);
+        }
+        return total > 0 ? total / (total + weights[k]) : Scalar(0);
     }
 
     /// Moves the forecasts' shares within the learned part of joint `k` towards those that they earned.
@@ -273,12 +300,9 @@ class FeedForward {
         const Scalar step = earned_share(k) - share_[k];
         share_[k] += std::clamp(step, -period_s() / settings_.fall_s, period_s() / settings_.rise_s);
         mix(k);
-        Scalar learned = 0;
-        for (int i = k; i < mix_.size(); i += joints_) {
-            learned += mix_[i] * (from_[i] + way * (to_[i] - from_[i]));
-        }
-        const Scalar beyond =
-            known_ && next_known_ ? bounded(learned - nominal, settings_.cap[k]) : Scalar(0);
+        const auto forecast = [&](int i) { return from_[i] + way * (to_[i] - from_[i]); };
+        const std::optional<Scalar> learned = known_ && next_known_ ? combined(k, forecast) : std::nullopt;
+        const Scalar beyond = learned ? bounded(*learned - nominal, settings_.cap[k]) : Scalar(0);
         const Scalar most = settings_.rate[k] * period_s();
         part_[k] += std::clamp(share_[k] * beyond - part_[k], -most, most);
         return bounded(nominal + part_[k], settings_.limit[k]);

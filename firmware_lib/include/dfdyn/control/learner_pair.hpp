@@ -3,7 +3,9 @@
 
 #include "dfdyn/control/feed_forward.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace dfdyn {
@@ -50,30 +52,21 @@ class LearnerPair {
         second_->go_on();
     }
 
-    /// Writes the forecasts of both, `forecast_count()` times n torques. If one learner has no prediction,
-    /// the other's forecasts stand for its own, in turn; their errors then count as its own, too. Returns
-    /// false if neither has one.
+    /// Writes the forecasts of both, `forecast_count()` times n torques. Those of a learner without a
+    /// prediction are NaN. Returns false if neither has one.
     bool predict(std::int64_t time_ns, const Scalar* position, Scalar* torque) noexcept {
         const int size = first_->forecast_count() * output_count();
         const int second_size = second_->forecast_count() * output_count();
         Scalar* const second = torque + size;
         const bool first_known = first_->predict(time_ns, position, torque);
         const bool second_known = second_->predict(time_ns, position, second);
-        if (!first_known && second_known) {
-            repeat(second, second_size, torque, size);
-        } else if (first_known && !second_known) {
-            repeat(torque, size, second, second_size);
-        }
+        constexpr Scalar unknown = std::numeric_limits<Scalar>::quiet_NaN();
+        std::fill_n(torque, first_known ? 0 : size, unknown);
+        std::fill_n(second, second_known ? 0 : second_size, unknown);
         return first_known || second_known;
     }
 
   private:
-    static void repeat(const Scalar* from, int from_size, Scalar* to, int to_size) noexcept {
-        for (int i = 0; i < to_size; ++i) {
-            to[i] = from[i % from_size];
-        }
-    }
-
     First* first_;
     Second* second_;
 };
