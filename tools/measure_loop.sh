@@ -1,15 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# measure_loop.sh DFDYN OUT [ARM]: simulates all faults of a control loop on both arms and prints the tables of docs/results/loop.md. The
+# measure_loop.sh DFDYN OUT [ARM [FAULT...]]: simulates all faults of a control loop on both arms, prints the tables of docs/results/loop.md. The
 # models are those of loop_demo.sh, which have learned nothing yet. The faults are those of tests/data/loop_faults, unchanged for the
 # UR5 and adapted in size for the iCub's arm. Each table compares the nominal rigid body, an observer, recursive least squares of rigid
 # body and friction (model P, a memory of 8 s) without and with observer, the learned model alone, and the complete loop (learned model
-# and observer). Takes about 15 minutes; keeps its runs in OUT. ARM (ur5 or icub): only the table of that arm.
+# and observer). Takes about 15 minutes; keeps its runs in OUT. ARM (ur5 or icub): only the table of that arm. FAULT (none, or
+# a file's name without .json): only these rows.
 set -euo pipefail
-dfdyn=${1:?usage: measure_loop.sh DFDYN OUT [ARM]}
-out=${2:?usage: measure_loop.sh DFDYN OUT [ARM]}
+dfdyn=${1:?usage: measure_loop.sh DFDYN OUT [ARM [FAULT...]]}
+out=${2:?usage: measure_loop.sh DFDYN OUT [ARM [FAULT...]]}
 data=$(cd "$(dirname "${BASH_SOURCE[0]}")/../tests/data" && pwd)
 mkdir -p "$out"
+faults=("${@:4}")
+if [[ ${#faults[@]} -eq 0 ]]; then
+    mapfile -t faults < <(echo none && cd "$data/loop_faults" && basename -s .json -- *.json)
+fi
 
 # models ARM URDF TIP: from half a minute under the nominal rigid body, on another motion and without payload.
 models() {
@@ -98,7 +103,7 @@ table() {
     local arm=$1 robot=$data/robots/$2 fault
     echo "| fault | nominal | observer | least squares | least squares, observer | learned alone | learned | learned / nominal | step (%) | recovery (s) | named | stopped by |"
     echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- | --- |"
-    for fault in none $(cd "$data/loop_faults" && basename -s .json -- *.json); do
+    for fault in "${faults[@]}"; do
         if [[ $arm == icub && $fault == torque_* ]]; then
             continue # it has no torque sensors
         fi
