@@ -151,6 +151,7 @@ struct PairRun {
     FeedForward<Pair> forward{pair, {period_ns, ticks_per_sample, {{100}}, {{90}}, {{2000}}}};
     double last = 0;
     double largest_step = 0;
+    double least = 0; ///< torque of the last call of `go`
 
     PairRun() {
         constexpr double start = 0;
@@ -159,6 +160,7 @@ struct PairRun {
 
     void go(double seconds) {
         largest_step = 0;
+        least = 100;
         for (auto tick = std::llround(seconds / period_s); tick > 0; --tick) {
             constexpr double nominal = 10;
             constexpr double needed = 50;
@@ -166,6 +168,7 @@ struct PairRun {
             forward.commanded(&needed);
             forward.measured(0, &nominal, &needed);
             largest_step = std::max(largest_step, std::abs(torque - last));
+            least = std::min(least, torque);
             last = torque;
         }
     }
@@ -186,13 +189,13 @@ TEST_CASE("of two learners the more accurate one is used, and they are exchanged
     CHECK(run.largest_step <= 2 * 80 * period_s / 0.2); // both the share and the mixture change
 }
 
-TEST_CASE("where one learner has no prediction the other one's is used at once") {
+TEST_CASE("where one learner has no prediction the other one's is used at once if it was right") {
     for (const bool first_is_used : {true, false}) {
         PairRun run;
         ToldLearner& used = first_is_used ? run.first : run.second;
         ToldLearner& other = first_is_used ? run.second : run.first;
         used.forecast = 50;
-        other.forecast = 52;
+        other.forecast = 52; // right, too; the nominal torque has an error of 40 N·m
         run.go(3);
         other.forecast = 50;
         used.knows = false;
@@ -201,6 +204,20 @@ TEST_CASE("where one learner has no prediction the other one's is used at once")
         other.knows = false;
         run.go(1);
         CHECK(run.last == Approx(10));
+    }
+}
+
+TEST_CASE("a rejected forecast is not commanded in place of one that is unknown") {
+    for (const bool first_is_used : {true, false}) {
+        PairRun run;
+        ToldLearner& used = first_is_used ? run.first : run.second;
+        ToldLearner& other = first_is_used ? run.second : run.first;
+        used.forecast = 50;
+        other.forecast = -30; // an error of 80 N·m; the nominal torque, 10 N·m, has one of 40
+        run.go(3);
+        used.knows = false;
+        run.go(1);
+        CHECK(run.least >= 9);
     }
 }
 

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
-#include <optional>
 
 namespace dfdyn {
 
@@ -45,8 +44,9 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 /// `slow_share` only. Errors beyond ± `limit` count as `limit`, and slow parts fade while nothing is
 /// compared, so one absurd forecast is forgotten within the memory.
 ///
-/// A forecast that is unknown is left out, and the known ones are used in its place. It earns no more than
-/// the nominal torque does: its error counts as that of the nominal torque.
+/// A forecast that is unknown is left out, and its error counts as that of the nominal torque: it earns no
+/// more. The known forecasts are used in its place at once, each with the weight that it earned beyond the
+/// nominal torque; one that was no better than the nominal torque has none.
 ///
 /// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`, and the
 /// shares of the forecasts within it change in `fall_s`. It adds at most `cap` to the nominal torque and
@@ -199,7 +199,7 @@ class FeedForward {
     /// to hold it after a stop. Unknown forecasts (NaN) are left out; without a known one the result is 0.
     void combine(const Scalar* other, Scalar* torque) const noexcept {
         for (int k = 0; k < joints_; ++k) {
-            torque[k] = combined(k, [other](int i) { return other[i]; }).value_or(Scalar(0));
+            torque[k] = combined(k, [other](int i) { return other[i]; }).torque;
         }
     }
 
@@ -248,35 +248,43 @@ class FeedForward {
         next_known_ = learner_->predict(knot_ns_, ahead_.data(), to_.data());
     }
 
-    /// Least share of a known forecast, so that it can be used when better ones become unknown.
-    static constexpr Scalar least_mix = Scalar(1e-6);
+    /// What the known ones of a joint's forecasts give.
+    struct Learned {
+        Scalar torque; ///< their combination
+        Scalar earned; ///< their share beside the nominal torque
+        bool complete; ///< all forecasts are known
+    };
 
-    /// Combines the finite ones of joint `k`'s forecasts `value(i)` by their shares.
+    /// Combines the finite ones of joint `k`'s forecasts `value(i)`. In place of unknown ones each has the
+    /// weight that it earned beyond the nominal torque: none, if it was no better.
     template <class Value>
-    [[nodiscard]] std::optional<Scalar> combined(int k, const Value& value) const noexcept {
+    [[nodiscard]] Learned combined(int k, const Value& value) const noexcept {
+        const Scalar* const weights = combination_.weights();
+        Learned all{Scalar(0), 1 - weights[k], true};
         Scalar sum = 0;
         Scalar total = 0;
         for (int i = k; i < mix_.size(); i += joints_) {
             const Scalar forecast = value(i);
-            if (std::isfinite(forecast)) {
-                const Scalar share = std::max(mix_[i], least_mix);
-                sum += share * forecast;
-                total += share;
+            if (!std::isfinite(forecast)) {
+                all.complete = false;
+                continue;
             }
+            const Scalar beyond = std::max(Scalar(0), weights[joints_ + i] - weights[k]);
+            all.torque += mix_[i] * forecast;
+            sum += beyond * forecast;
+            total += beyond;
         }
-        return total > 0 ? std::optional<Scalar>(sum / total) : std::nullopt;
+        if (all.complete) {
+            return all;
+        }
+        return total > 0 ? Learned{sum / total, total / (total + weights[k]), false} : Learned{0, 0, false};
     }
 
-    /// Returns the share that the forecast combination assigns to the known forecasts of the learner, beside
-    /// the nominal torque.
-    [[nodiscard]] Scalar earned_share(int k) const noexcept {
-        const bool trusted = enabled_ && known_ && next_known_ && judged_ >= judged_for_;
-        const Scalar* const weights = combination_.weights();
-        Scalar total = 0;
-        for (int i = k; trusted && i < mix_.size(); i += joints_) {
-            total += std::isfinite(from_[i]) && std::isfinite(to_[i]) ? weights[joints_ + i] : Scalar(0);
-        }
-        return total > 0 ? total / (total + weights[k]) : Scalar(0);
+    /// Returns what `learned` adds to joint `k`'s nominal torque. The share rises and falls slowly, but
+    /// forecasts in place of unknown ones have at once no more than they earned.
+    [[nodiscard]] Scalar added(int k, const Learned& learned, Scalar nominal) const noexcept {
+        const Scalar share = learned.complete ? share_[k] : std::min(share_[k], learned.earned);
+        return share * bounded(learned.torque - nominal, settings_.cap[k]);
     }
 
     /// Moves the forecasts' shares within the learned part of joint `k` towards those that they earned.
@@ -297,14 +305,15 @@ class FeedForward {
     }
 
     Scalar with_learned(int k, Scalar nominal, Scalar way) noexcept {
-        const Scalar step = earned_share(k) - share_[k];
-        share_[k] += std::clamp(step, -period_s() / settings_.fall_s, period_s() / settings_.rise_s);
         mix(k);
-        const auto forecast = [&](int i) { return from_[i] + way * (to_[i] - from_[i]); };
-        const std::optional<Scalar> learned = known_ && next_known_ ? combined(k, forecast) : std::nullopt;
-        const Scalar beyond = learned ? bounded(*learned - nominal, settings_.cap[k]) : Scalar(0);
+        const Learned learned = combined(k, [&](int i) { return from_[i] + way * (to_[i] - from_[i]); });
+        const bool known = known_ && next_known_;
+        const Scalar earned = enabled_ && known && judged_ >= judged_for_ ? learned.earned : Scalar(0);
+        share_[k] +=
+            std::clamp(earned - share_[k], -period_s() / settings_.fall_s, period_s() / settings_.rise_s);
         const Scalar most = settings_.rate[k] * period_s();
-        part_[k] += std::clamp(share_[k] * beyond - part_[k], -most, most);
+        const Scalar wanted = known ? added(k, learned, nominal) : Scalar(0);
+        part_[k] += std::clamp(wanted - part_[k], -most, most);
         return bounded(nominal + part_[k], settings_.limit[k]);
     }
 
