@@ -8,11 +8,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 namespace dfdyn::tools {
 
 namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 void check_model(const TrainedModel& model, int joints, const std::string& source) {
     const std::vector<std::string> expected =
@@ -191,7 +194,7 @@ bool LearnedFeedForward::predict(std::int64_t time_ns, const double* reference, 
     const Tick tick = follower_->tick({time_ns, of_joints(reference), {}, {}, {}});
     if (!tick.status.estimated()) {
         ++counters_.reference_unknown;
-        std::fill_n(torque, static_cast<std::size_t>(forecast_count()) * prediction_.size(), 0.0);
+        std::fill_n(torque, static_cast<std::size_t>(forecast_count()) * prediction_.size(), unknown);
         return false;
     }
     return take_forecasts(torque);
@@ -199,16 +202,7 @@ bool LearnedFeedForward::predict(std::int64_t time_ns, const double* reference, 
 
 bool LearnedFeedForward::take_forecasts(double* torque) {
     const bool known = take_prediction(learner_, torque);
-    if (!physics_) {
-        return known;
-    }
-    const std::size_t n = prediction_.size();
-    const bool physics_known = take_prediction(*physics_, torque + n);
-    if (!known) {
-        std::copy_n(torque + n, n, torque);
-    } else if (!physics_known) {
-        std::copy_n(torque, n, torque + n);
-    }
+    const bool physics_known = physics_ && take_prediction(*physics_, torque + prediction_.size());
     return known || physics_known;
 }
 
@@ -228,10 +222,11 @@ bool LearnedFeedForward::rest(const JointVector& position, JointVector& forecast
 }
 
 bool LearnedFeedForward::take_prediction(const Learner& learner, double* torque) {
-    const bool within_bounds = follower_->predict_with(learner.weights, prediction_);
-    std::ranges::copy(prediction_, torque);
-    return within_bounds &&
-           std::ranges::all_of(prediction_, [](float value) { return std::isfinite(value); });
+    const bool known = follower_->predict_with(learner.weights, prediction_) &&
+                       std::ranges::all_of(prediction_, [](float value) { return std::isfinite(value); });
+    std::ranges::transform(prediction_, torque,
+                           [=](float value) { return known ? static_cast<double>(value) : unknown; });
+    return known;
 }
 
 } // namespace dfdyn::tools

@@ -69,8 +69,7 @@ class LearnedFeedForward {
     void go_on();
 
     /// Predicts the torque (N·m) of the reference at `time_ns`, one sample period after the previous call:
-    /// the torques of each forecast. One without a valid prediction is that of the other; returns false if
-    /// none has one.
+    /// the torques of each forecast; NaN without a valid prediction. Returns false if none has one.
     bool predict(std::int64_t time_ns, const double* reference, double* torque);
 
     /// Predicts the torque (N·m) that holds the arm at rest at `position`, after the motion has ended. Each
@@ -111,9 +110,10 @@ class LearnedFeedForward {
         void take_over();
     };
 
-    /// Predicts from the follower's columns with these weights; false if they exceed the model's bounds.
+    /// Predicts from the follower's columns with these weights; false, and NaN, if they exceed the model's
+    /// bounds.
     bool take_prediction(const Learner& learner, double* torque);
-    /// Writes each learner's prediction; one without a valid one gets the other's. False if none is valid.
+    /// Writes each learner's prediction. Returns false if none is valid.
     bool take_forecasts(double* torque);
     std::span<const double> of_joints(const double* values) const { return {values, prediction_.size()}; }
 

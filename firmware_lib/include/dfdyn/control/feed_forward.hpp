@@ -159,7 +159,7 @@ class FeedForward {
     /// Do not call it if the command is not the torque that the motion needs: at a limit, or while positions
     /// are missing. NaN or infinite values are not compared.
     void commanded(const Scalar* torque) noexcept {
-        if (!at_knot_ || !known_) {
+        if (!at_knot_ || !known_ || !next_known_) {
             return;
         }
         for (int i = 0; i < compared_.size(); ++i) {

@@ -7,6 +7,7 @@
 #include "tests/tools/support/small_model.hpp"
 #include "tools/base/text/error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -161,6 +162,35 @@ TEST_CASE("the forecast of the physics alone follows a change of the arm before 
     }
     CHECK(predicted[3] < -0.3 * load);
     CHECK(predicted[1] > predicted[3] + 0.5 * load);
+}
+
+TEST_CASE("forecasts of a reference out of range and those beyond the model's bounds are NaN") {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr std::int64_t model_period = 4'000'000;
+    TrainedModel model = dfdyn::tests::small_physics_model(engine, "SPK", InputKind::DFR, /*wrench=*/false);
+    model.outputs.prior_variance = 1;
+    model.limits.prediction = {0, 2}; // N·m; joint 1 has no bound
+    LearnedFeedForward learned(model, true, 2, 4, "model");
+    learned.begin(0, position(0).data());
+    for (int tick = 1; tick <= 2000; ++tick) {
+        const std::array<double, 2> measured{0, 5};
+        learned.learn(tick * model_period, position(tick).data(), measured.data());
+        for (int slice = 1; slice < 4; ++slice) {
+            learned.go_on();
+        }
+    }
+    LearnedFeedForward restored(model, true, 2, 4, "model"); // its physics alone have learned nothing
+    REQUIRE(restored.restore(learned.snapshot()));
+    restored.begin(0, position(0).data());
+    std::array<double, 4> predicted{};
+    REQUIRE(restored.predict(model_period, position(1).data(), predicted.data()));
+    CHECK((std::isnan(predicted[0]) && std::isnan(predicted[1])));
+    CHECK((std::isfinite(predicted[2]) && std::isfinite(predicted[3])));
+    CHECK(restored.counters().reference_unknown == 0);
+    const std::array<double, 2> absurd{1e9, 0};
+    CHECK_FALSE(restored.predict(2 * model_period, absurd.data(), predicted.data()));
+    CHECK(std::ranges::all_of(predicted, [](double value) { return std::isnan(value); }));
+    CHECK(restored.counters().reference_unknown == 1);
 }
 
 TEST_CASE("a model that does not map these joints' positions to their torques is rejected") {
