@@ -234,6 +234,20 @@ TEST_CASE("a rejected forecast is not commanded in place of one that is unknown"
     }
 }
 
+TEST_CASE("an absurd forecast moves a joint no further than one of its torque limit does") {
+    const auto farthest = [](double absurd) {
+        PairRun run;
+        run.first.forecast = 49; // an error of 1 N·m
+        run.second.forecast = -30;
+        run.go(3);
+        run.second.forecast = absurd;
+        run.go(0.05);
+        return run.least;
+    };
+    CHECK(farthest(-1e10) == Approx(farthest(-100)).margin(1e-9));
+    CHECK(farthest(-1e10) > 48.9);
+}
+
 TEST_CASE("learners with different numbers of forecasts form a pair, and unknown forecasts are NaN") {
     ToldLearner first, second, third;
     using Two = LearnerPair<ToldLearner, ToldLearner>;

@@ -46,7 +46,8 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 ///
 /// A forecast that is unknown is left out, and its error counts as that of the nominal torque: it earns no
 /// more. The known forecasts are used in its place at once, each with the weight that it earned beyond the
-/// nominal torque; one that was no better than the nominal torque has none.
+/// nominal torque; one that was no better than the nominal torque has none. A forecast
+/// beyond ± `limit` counts as `limit`.
 ///
 /// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`, and the
 /// shares of the forecasts within it change in `fall_s`. It adds at most `cap` to the nominal torque and
@@ -264,11 +265,12 @@ class FeedForward {
         Scalar sum = 0;
         Scalar total = 0;
         for (int i = k; i < mix_.size(); i += joints_) {
-            const Scalar forecast = value(i);
-            if (!std::isfinite(forecast)) {
+            const Scalar given = value(i);
+            if (!std::isfinite(given)) {
                 all.complete = false;
                 continue;
             }
+            const Scalar forecast = std::clamp(given, -settings_.limit[k], settings_.limit[k]);
             const Scalar beyond = std::max(Scalar(0), weights[joints_ + i] - weights[k]);
             all.torque += mix_[i] * forecast;
             sum += beyond * forecast;
