@@ -296,15 +296,26 @@ TEST_CASE("a wrong learner has no larger share because another one has no predic
     CHECK(run.forward.share()[0] < 0.1);
 }
 
-TEST_CASE("other forecasts are combined with the shares of the command's") {
+TEST_CASE("other forecasts are combined with the shares of the command's, and unknown ones left out") {
     PairRun run;
     run.first.forecast = 50;
     run.second.forecast = -30;
     run.go(3);
-    const std::array<double, 2> at_rest{7, 1000};
-    double torque = 0;
-    run.forward.combine(at_rest.data(), &torque);
-    CHECK(torque == Approx(7).margin(2));
+    const auto combined = [&](double first, double second) {
+        const std::array<double, 2> other{first, second};
+        constexpr double nominal = 20;
+        double torque = 0;
+        run.forward.combine(other.data(), &nominal, &torque);
+        return torque;
+    };
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    CHECK(combined(7, 1000) == Approx(7).margin(0.1));
+    CHECK(combined(7, unknown) == Approx(7).margin(0.1));
+    CHECK(combined(unknown, -80) == 20); // it was worse than the nominal torque
+    CHECK(combined(unknown, unknown) == 20);
+    constexpr double start = 0;
+    run.forward.begin(0, &start);
+    CHECK(combined(7, 7) == 20); // no forecast has a share yet
 }
 
 /// A joint under feedback and feed-forward that has to hold a load, tick by tick.

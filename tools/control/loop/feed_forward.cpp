@@ -110,10 +110,10 @@ JointVector FeedForward::holding(const Reference& reference) {
     }
     JointVector forecasts;
     if (learned_->rest(reference.position, forecasts)) {
-        JointVector learned(torque.size());
-        core_->combine(forecasts.data(), learned.data());
-        const JointVector beyond = learned - gravity(reference.position);
-        held_learned_ = learned_share().cwiseProduct(beyond.cwiseMin(cap_).cwiseMax(-cap_));
+        const JointVector at_rest = gravity(reference.position);
+        JointVector holding(torque.size());
+        core_->combine(forecasts.data(), at_rest.data(), holding.data());
+        held_learned_ = holding - at_rest;
     }
     return torque + held_learned_;
 }

@@ -195,12 +195,15 @@ class FeedForward {
     /// Returns the share of the learned forecast in each joint's torque, 0 … 1.
     [[nodiscard]] const Torques& share() const noexcept { return share_; }
 
-    /// Combines other forecasts (`forecast_count()` times n values, one forecast after the other) into n
-    /// learned torques, as the present command combines its own: for example forecasts of the arm at rest,
-    /// to hold it after a stop. Unknown forecasts (NaN) are left out; without a known one the result is 0.
-    void combine(const Scalar* other, Scalar* torque) const noexcept {
+    /// Combines other forecasts (`forecast_count()` times n values, one forecast after the other) with
+    /// another `nominal` torque (n values, N·m) into n torques, as the present command combines its own and
+    /// with the same share: for example those of the arm at rest, to hold it after a stop. Unknown forecasts
+    /// are NaN; without a known one the result is the nominal torque.
+    void combine(const Scalar* other, const Scalar* nominal, Scalar* torque) const noexcept {
         for (int k = 0; k < joints_; ++k) {
-            torque[k] = combined(k, [other](int i) { return other[i]; }).torque;
+            const Scalar known_nominal = bounded(nominal[k], settings_.limit[k]);
+            const Learned learned = combined(k, [other](int i) { return other[i]; });
+            torque[k] = bounded(known_nominal + added(k, learned, known_nominal), settings_.limit[k]);
         }
     }
 
