@@ -45,9 +45,9 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 /// compared, so one absurd forecast is forgotten within the memory.
 ///
 /// A forecast that is unknown is left out, and its error counts as that of the nominal torque: it earns no
-/// more. The known forecasts are used in its place at once, each with the weight that it earned beyond the
-/// nominal torque; one that was no better than the nominal torque has none. A forecast
-/// beyond ± `limit` counts as `limit`.
+/// more, and one that has never been known starts with the weight of the nominal torque. The known forecasts
+/// are used in its place at once, each with the weight that it earned beyond the nominal torque; one that was
+/// no better than the nominal torque has none. A forecast beyond ± `limit` counts as `limit`.
 ///
 /// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`, and the
 /// shares of the forecasts within it change in `fall_s`. It adds at most `cap` to the nominal torque and
