@@ -8,6 +8,8 @@
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/replay/opponents/rigid_body.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
