@@ -18,9 +18,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index terms = 5;          ///< of plain least squares, for each joint
-constexpr double known_gain = 0.03; ///< standard deviation of torque constants that are given
-constexpr double unknown = 1e3;     ///< standard deviation (SI units) of a term without a prior
+constexpr Index terms = 5;      ///< of plain least squares, for each joint
+constexpr double unknown = 1e3; ///< standard deviation (SI units) of a term without a prior
 /// Time between independent samples of the residual. Chosen with the thirteen recordings of
 /// tests/data/ur5_kufieta: 148 of 154 intervals of friction then hold the mean of the recordings.
 constexpr double correlation_s = 0.1;
@@ -46,12 +45,13 @@ class ArmEquations {
   public:
     ArmEquations(const DiagnosisSignals& signals, const MatrixXd& measured,
                  const std::vector<MovingFit>& plain)
-        : signals_(signals), target_(measured - signals.nominal), plain_(plain),
+        : signals_(signals), target_(measured - signals.nominal), rest_(target_), plain_(plain),
           links_(link_deviations(nominal_parameters(signals.robot, signals.kind))) {
         for (Index joint = 0; joint < joints(); ++joint) {
             weight_.emplace_back(weight_of(joint));
             const MovingFit& own = plain[static_cast<std::size_t>(joint)];
-            variance_.push_back(mean_square(joint, measured.col(joint) - own.columns * own.values));
+            variance_.push_back(
+                weighted_mean_square(measured.col(joint) - own.columns * own.values, weight_.back()));
             add_products(joint);
         }
     }
@@ -80,7 +80,9 @@ class ArmEquations {
         values_ = factor.solve(moment);
         covariance_ = factor.solve(MatrixXd::Identity(size, size));
         for (Index joint = 0; joint < joints(); ++joint) {
-            variance_[static_cast<std::size_t>(joint)] = mean_square(joint, rest(joint));
+            const auto number = static_cast<std::size_t>(joint);
+            rest_.col(joint) = target_.col(joint) - columns(joint) * values_(unknowns_of(joint));
+            variance_[number] = weighted_mean_square(rest_.col(joint), weight_[number]);
         }
     }
 
@@ -88,23 +90,14 @@ class ArmEquations {
     MatrixXd covariance(Index joint) const {
         return covariance_.block(first_term(joint), first_term(joint), terms, terms);
     }
-    VectorXd rest(Index joint) const {
-        return target_.col(joint) - columns(joint) * values_(unknowns_of(joint));
-    }
+    const MatrixXd& rest() const { return rest_; } ///< T x n: what the values leave
 
   private:
     /// Returns the weights of the rows; a joint that hardly moves has none.
     VectorXd weight_of(Index joint) const {
-        if (signals_.hardly_moves(static_cast<std::size_t>(joint))) {
-            return VectorXd::Zero(signals_.rows());
-        }
-        return signals_.measured.weight.size() > 0 ? VectorXd(signals_.measured.weight.col(joint))
-                                                   : VectorXd(VectorXd::Ones(signals_.rows()));
-    }
-
-    double mean_square(Index joint, const VectorXd& error) const {
-        const VectorXd& weight = weight_[static_cast<std::size_t>(joint)];
-        return weight.dot(error.cwiseAbs2()) / std::max(weight.sum(), 1.0);
+        return signals_.hardly_moves(static_cast<std::size_t>(joint))
+                   ? VectorXd(VectorXd::Zero(signals_.rows()))
+                   : row_weight(signals_, joint);
     }
 
     std::vector<Index> unknowns_of(Index joint) const {
@@ -129,7 +122,7 @@ class ArmEquations {
     }
 
     const DiagnosisSignals& signals_;
-    MatrixXd target_;
+    MatrixXd target_, rest_;
     const std::vector<MovingFit>& plain_;
     VectorXd links_; ///< standard deviations of the links' parameters
     std::vector<VectorXd> weight_, moment_;
@@ -141,12 +134,10 @@ class ArmEquations {
 
 /// Returns the gains' deviations: the given torque constants hold where the data do not contradict them.
 VectorXd gain_deviations(const ArmEquations& free, bool gains_known) {
-    constexpr double far = 3;
     VectorXd result = VectorXd::Constant(free.joints(), unknown);
     for (Index joint = 0; gains_known && joint < free.joints(); ++joint) {
-        const double deviation = std::hypot(std::sqrt(free.covariance(joint)(0, 0)), known_gain);
-        if (std::abs(free.values(joint)[0]) < far * deviation) {
-            result[joint] = known_gain;
+        if (!contradicts_known_gain(1 + free.values(joint)[0], free.covariance(joint)(0, 0))) {
+            result[joint] = known_gain_deviation;
         }
     }
     return result;
@@ -163,17 +154,14 @@ ArmFit fit_arm(const DiagnosisSignals& signals, const MatrixXd& measured, std::v
     for (int round = 0; round < rounds; ++round) {
         equations.solve(gains);
     }
-    ArmFit fit{{}, MatrixXd(signals.rows(), equations.joints())};
     for (Index joint = 0; joint < equations.joints(); ++joint) {
         MovingFit& own = plain[static_cast<std::size_t>(joint)];
-        fit.rest.col(joint) = equations.rest(joint);
         own.values = equations.values(joint);
         own.values[0] += 1;
         own.covariance = equations.covariance(joint);
-        own.another_gain = gains_known && gains[joint] > known_gain;
+        own.another_gain = gains_known && gains[joint] > known_gain_deviation;
     }
-    fit.joints = std::move(plain);
-    return fit;
+    return {std::move(plain), equations.rest()};
 }
 
 } // namespace dfdyn::tools

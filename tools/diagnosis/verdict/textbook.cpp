@@ -82,7 +82,7 @@ MatrixXd covariance_of(const WeightedFit& fit, const MatrixXd& sums, const Vecto
     const auto fitted = static_cast<double>((fit.scale.array() > 0).count());
     const MatrixXd gradient = fit.scale.asDiagonal() * fit.inverse * fit.scale.asDiagonal() * sums;
     MatrixXd covariance = blocks / std::max(blocks - fitted, 1.0) * (gradient * gradient.transpose()).eval();
-    const double variance = weight.dot(error.cwiseAbs2()) / std::max(weight.sum(), 1.0);
+    const double variance = weighted_mean_square(error, weight);
     for (Index i = 0; i < covariance.rows(); ++i) {
         const double white = variance * fit.scale[i] * fit.scale[i] * fit.inverse(i, i);
         covariance(i, i) = std::max(covariance(i, i), white);
@@ -92,19 +92,31 @@ MatrixXd covariance_of(const WeightedFit& fit, const MatrixXd& sums, const Vecto
 
 /// Takes into account that the rigid body's factor is near 1, unless the data contradict it.
 void expect_gain_of_one(MovingFit& fit) {
-    constexpr double deviation = 0.03; // of torque constants and masses that are given
-    constexpr double far = 3;
-    const double variance = fit.covariance(0, 0) + deviation * deviation;
-    const double apart = 1 - fit.values[0];
-    fit.another_gain = apart * apart > far * far * variance;
+    fit.another_gain = contradicts_known_gain(fit.values[0], fit.covariance(0, 0));
     if (!fit.another_gain) {
+        const double variance = fit.covariance(0, 0) + known_gain_deviation * known_gain_deviation;
         const VectorXd along = fit.covariance.col(0) / variance;
-        fit.values += apart * along;
+        fit.values += (1 - fit.values[0]) * along;
         fit.covariance -= (variance * along * along.transpose()).eval();
     }
 }
 
 } // namespace
+
+bool contradicts_known_gain(double gain, double variance) {
+    constexpr double far = 3;
+    const double apart = 1 - gain;
+    return apart * apart > far * far * (variance + known_gain_deviation * known_gain_deviation);
+}
+
+VectorXd row_weight(const DiagnosisSignals& signals, Index output) {
+    const MatrixXd& weight = signals.measured.weight;
+    return weight.size() > 0 ? VectorXd(weight.col(output)) : VectorXd(VectorXd::Ones(signals.rows()));
+}
+
+double weighted_mean_square(const VectorXd& error, const VectorXd& weight) {
+    return weight.dot(error.cwiseAbs2()) / std::max(weight.sum(), 1.0);
+}
 
 TextbookFit textbook_fit(const DiagnosisSignals& signals, const MatrixXd& measured, const MatrixXd& rigid,
                          Index rows) {
@@ -122,10 +134,7 @@ MovingFit fit_moving_rows(const DiagnosisSignals& signals, const VectorXd& measu
                           Index output, bool gain_known) {
     constexpr double least_independent = 0.01; // share of the rigid body's column
     MovingFit fit{textbook_columns(signals, rigid, output), VectorXd(5), MatrixXd::Zero(5, 5)};
-    VectorXd weight = VectorXd::Ones(signals.rows());
-    if (signals.measured.weight.size() > 0) {
-        weight = signals.measured.weight.col(output);
-    }
+    const VectorXd weight = row_weight(signals, output);
     const WeightedFit all = weighted_fit(fit.columns, weight, measured);
     const bool gain_seen = all.scale[0] > 0 && all.inverse(0, 0) * least_independent < 1;
     const Index first = gain_seen ? 0 : 1;

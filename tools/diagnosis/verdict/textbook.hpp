@@ -21,6 +21,19 @@ struct TextbookFit {
 TextbookFit textbook_fit(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                          const Eigen::MatrixXd& rigid, Eigen::Index rows);
 
+/// Standard deviation of the rigid body's factor at a joint whose torque constant is given.
+inline constexpr double known_gain_deviation = 0.03;
+
+/// Returns whether data contradict that a factor is 1 ± `known_gain_deviation`: by three deviations. `gain`:
+/// its estimate without that knowledge, with this variance.
+bool contradicts_known_gain(double gain, double variance);
+
+/// Returns the weights (T) of an output's rows (MeasuredMotion::weight).
+Eigen::VectorXd row_weight(const DiagnosisSignals& signals, Eigen::Index output);
+
+/// Returns the mean square of errors (T) with the rows' weights (T).
+double weighted_mean_square(const Eigen::VectorXd& error, const Eigen::VectorXd& weight);
+
 /// Plain least squares of one output in the rows in which its joint moves, with its uncertainty.
 struct MovingFit {
     Eigen::MatrixXd columns;    ///< T x 5, in the order of `TextbookTerm`

@@ -38,12 +38,12 @@ bool friction_everywhere(const DiagnosisWork& work) {
     std::size_t moving = 0;
     std::size_t real = 0;
     for (std::size_t joint = 0; !signals.wrench() && joint < signals.joints(); ++joint) {
-        const bool moves = !signals.hardly_moves(joint);
-        moving += moves ? 1 : 0;
-        real +=
-            moves && (work.diagnosis.by_least_squares[joint] || (joint < inexact.size() && inexact[joint]))
-                ? 1
-                : 0;
+        if (signals.hardly_moves(joint)) {
+            continue;
+        }
+        ++moving;
+        const bool no_effect_fits = joint < inexact.size() && inexact[joint];
+        real += no_effect_fits || work.diagnosis.by_least_squares[joint] ? 1 : 0;
     }
     return real >= 2 && 2 * real >= moving;
 }
