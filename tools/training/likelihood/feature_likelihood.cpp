@@ -44,56 +44,46 @@ MatrixXd pull_back_to_phase(const Features& features, const MatrixXd& phi_gradie
 class RidgeCovariance final : public Covariance {
   public:
     /// Returns nothing if Phi' Phi + r I is not positive definite in double precision. O(N (2d)^2 + (2d)^3).
-    static std::optional<RidgeCovariance> of(const Eigen::MatrixXd& phi, double noise_ratio);
+    static std::optional<RidgeCovariance> of(const MatrixXd& phi, double noise_ratio) {
+        MatrixXd information = MatrixXd::Zero(phi.cols(), phi.cols());
+        information.selfadjointView<Eigen::Lower>().rankUpdate(phi.transpose());
+        information.diagonal().array() += noise_ratio;
+        Eigen::LLT<MatrixXd> factor(information);
+        if (factor.info() != Eigen::Success) {
+            return std::nullopt;
+        }
+        return RidgeCovariance(phi, noise_ratio, std::move(factor));
+    }
 
-    double log_determinant() const override;
+    double log_determinant() const override {
+        return static_cast<double>(phi_->rows() - phi_->cols()) * std::log(noise_ratio_) +
+               2 * factor_.matrixLLT().diagonal().array().log().sum();
+    }
 
     /// O(N 2d) per column of B.
-    Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_sides) const override;
+    MatrixXd solve(const MatrixXd& right_hand_sides) const override {
+        const MatrixXd weights = factor_.solve(phi_->transpose() * right_hand_sides);
+        return (right_hand_sides - *phi_ * weights) / noise_ratio_;
+    }
 
     /// Returns (Phi' Phi + r I)^-1, 2d x 2d; C^-1 Phi = Phi times it.
-    Eigen::MatrixXd inverse_information() const;
+    MatrixXd inverse_information() const {
+        return factor_.solve(MatrixXd::Identity(phi_->cols(), phi_->cols()));
+    }
 
     /// Returns r tr C^-1, from inverse_information().
-    double scaled_trace(const Eigen::MatrixXd& inverse_information) const;
+    double scaled_trace(const MatrixXd& inverse_information) const {
+        return static_cast<double>(phi_->rows() - phi_->cols()) + noise_ratio_ * inverse_information.trace();
+    }
 
   private:
-    RidgeCovariance(const Eigen::MatrixXd& phi, double noise_ratio, Eigen::LLT<Eigen::MatrixXd> factor)
+    RidgeCovariance(const MatrixXd& phi, double noise_ratio, Eigen::LLT<MatrixXd> factor)
         : phi_(&phi), noise_ratio_(noise_ratio), factor_(std::move(factor)) {}
 
-    const Eigen::MatrixXd* phi_;
+    const MatrixXd* phi_;
     double noise_ratio_;
-    Eigen::LLT<Eigen::MatrixXd> factor_;
+    Eigen::LLT<MatrixXd> factor_;
 };
-
-std::optional<RidgeCovariance> RidgeCovariance::of(const MatrixXd& phi, double noise_ratio) {
-    MatrixXd information = MatrixXd::Zero(phi.cols(), phi.cols());
-    information.selfadjointView<Eigen::Lower>().rankUpdate(phi.transpose());
-    information.diagonal().array() += noise_ratio;
-    Eigen::LLT<MatrixXd> factor(information);
-    if (factor.info() != Eigen::Success) {
-        return std::nullopt;
-    }
-    return RidgeCovariance(phi, noise_ratio, std::move(factor));
-}
-
-double RidgeCovariance::log_determinant() const {
-    return static_cast<double>(phi_->rows() - phi_->cols()) * std::log(noise_ratio_) +
-           2 * factor_.matrixLLT().diagonal().array().log().sum();
-}
-
-MatrixXd RidgeCovariance::solve(const MatrixXd& right_hand_sides) const {
-    const MatrixXd weights = factor_.solve(phi_->transpose() * right_hand_sides);
-    return (right_hand_sides - *phi_ * weights) / noise_ratio_;
-}
-
-MatrixXd RidgeCovariance::inverse_information() const {
-    return factor_.solve(MatrixXd::Identity(phi_->cols(), phi_->cols()));
-}
-
-double RidgeCovariance::scaled_trace(const MatrixXd& inverse_information) const {
-    return static_cast<double>(phi_->rows() - phi_->cols()) + noise_ratio_ * inverse_information.trace();
-}
 
 /// Gradient with respect to the parts of C = phi phi' + r I.
 struct RidgeGradient {

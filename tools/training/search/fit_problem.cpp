@@ -24,7 +24,7 @@ class ParametricLikelihood final : public Likelihood {
     explicit ParametricLikelihood(const OutputLikelihood& outputs) : outputs_(outputs) {}
 
     /// O(N m p^2), plus the regressor of every sample.
-    std::optional<LikelihoodValue> evaluate(const Eigen::VectorXd& theta) const override {
+    std::optional<LikelihoodValue> evaluate(const VectorXd& theta) const override {
         auto evidence = outputs_.evaluate(WhiteCovariance(), theta);
         if (!evidence) {
             return std::nullopt;
