@@ -215,7 +215,7 @@ class Estimator {
         regression_.predict(estimate.prediction.data());
         regression_.predict_without_features(outputs_.without_features());
         if (finite(estimate.prediction)) {
-            estimate.status.learning = outputs_.check(*constants_, sample);
+            estimate.status.learning = outputs_.check_measured(*constants_, sample);
             learn(sample, budget, estimate);
         }
         if (!finite(estimate.prediction) || !finite(estimate.standard_deviation)) {
@@ -265,7 +265,7 @@ class Estimator {
         if (measured) {
             estimate.normalised_innovation_squared = outputs_.innovation_square(estimate.prediction);
         }
-        outputs_.complete(*constants_, sample, measured, estimate);
+        outputs_.to_output_units(*constants_, sample, measured, estimate);
     }
 
     /// Applies the doubt at the input; after a change of the arm, until `reset`, to the variances only.

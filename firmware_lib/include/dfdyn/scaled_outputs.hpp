@@ -40,7 +40,7 @@ class ScaledOutputs {
     [[nodiscard]] Scalar* without_features() noexcept { return without_features_.data(); }
 
     /// Returns `ok` for measured outputs, in their own units, within their limits.
-    [[nodiscard]] Reason check(const Constants& constants, const Sample& sample) const noexcept {
+    [[nodiscard]] Reason check_measured(const Constants& constants, const Sample& sample) const noexcept {
         if (!sample.output_valid) {
             return Reason::output_missing;
         }
@@ -101,8 +101,8 @@ class ScaledOutputs {
     }
 
     /// Converts the estimate from the regression's units to the output's and applies the prediction limits.
-    void complete(const Constants& constants, const Sample& sample, bool measured,
-                  Estimate& estimate) const noexcept {
+    void to_output_units(const Constants& constants, const Sample& sample, bool measured,
+                         Estimate& estimate) const noexcept {
         for (int k = 0; k < target_.size(); ++k) {
             const Scalar noise = constants.output_noise_std[k];
             estimate.prediction[k] = constants.output_offset[k] + noise * estimate.prediction[k];

@@ -27,7 +27,7 @@ std::span<const StreamClock::Timed> StreamClock::take(const hal::Frame& frame) {
     const std::int64_t usual_ns = frames_ > 1 ? std::max(overtaken_ns, 20 * mean_ns) : least_step_ns;
     if (frames_ == 0 || (step_ns >= -overtaken_ns && step_ns <= std::max(least_step_ns, 20 * mean_ns))) {
         drop_waiting();
-        if (!waits_ahead(frame, step_ns, usual_ns)) {
+        if (!hold_ahead(frame, step_ns, usual_ns)) {
             follow(frame);
         }
         return ready_;
@@ -56,7 +56,7 @@ std::int64_t StreamClock::time_of(std::int64_t stamp_ns) const noexcept {
 }
 
 /// Returns true if the frame waits, or came after a silence and was followed with those that waited.
-bool StreamClock::waits_ahead(const hal::Frame& frame, std::int64_t step_ns, std::int64_t usual_ns) {
+bool StreamClock::hold_ahead(const hal::Frame& frame, std::int64_t step_ns, std::int64_t usual_ns) {
     const bool goes_on =
         !ahead_.empty() && difference(frame.stamp_ns, ahead_.back().stamp_ns) >= -overtaken_ns;
     if (!goes_on) { // those that wait were not of a silence

@@ -50,7 +50,7 @@ class StreamClock {
     void follow(hal::Frame frame);
     void adopt();
     void drop_waiting();
-    bool waits_ahead(const hal::Frame& frame, std::int64_t step_ns, std::int64_t usual_ns);
+    bool hold_ahead(const hal::Frame& frame, std::int64_t step_ns, std::int64_t usual_ns);
     void follow_ahead();
 
     std::vector<hal::Frame> ahead_; ///< after a step ahead, until it is known to be a silence

@@ -26,7 +26,7 @@ namespace dfdyn {
 /// Learning can be sliced after any panel of the sweep and after any column of weights. Predictions and
 /// variances are those before the sample until its rows are learned by π, and those after it from then on.
 template <class Scalar, int columns, int p, int m>
-class BlockArrow : public BlockArrowCost<Scalar, columns, p, m> {
+class BlockArrow : public BlockArrowFootprint<Scalar, columns, p, m> {
   public:
     static constexpr int identity = 3;
     using Constants = BlockArrowConstants<Scalar, columns, p, m>;
@@ -182,7 +182,7 @@ class BlockArrow : public BlockArrowCost<Scalar, columns, p, m> {
 
     static constexpr int regressions = product(m, sum(p, 1));
 
-    using Base = BlockArrowCost<Scalar, columns, p, m>;
+    using Base = BlockArrowFootprint<Scalar, columns, p, m>;
     using Base::forget_cost;
     using Base::weights_cost;
     using Factor = UdFactor<Scalar, columns>;

@@ -53,7 +53,7 @@ struct ArrowResidual {
 
 /// Work and memory of `BlockArrow`, for counts of columns, parameters and outputs.
 template <class Scalar, int columns, int p, int m>
-class BlockArrowCost {
+class BlockArrowFootprint {
   public:
     /// Returns the cost of the parts of a tick in multiply-adds.
     [[nodiscard]] static constexpr Cost cost(int column_count, int parameters, int outputs) noexcept {

@@ -47,8 +47,8 @@ class FrozenEffortGate {
             const bool smooth = learning || !frozen_ || change <= 3 * smallest_change_;
             longest_ = moved && smooth ? std::max(longest_, run_) : longest_;
             learned_ = std::min(learned_ + (moved ? 1 : 0), enough);
-            longest_of_all_ = smooth ? std::max(longest_of_all_, run_) : longest_of_all_;
-            learned_of_all_ = std::min(learned_of_all_ + 1, enough);
+            longest_at_any_speed_ = smooth ? std::max(longest_at_any_speed_, run_) : longest_at_any_speed_;
+            learned_at_any_speed_ = std::min(learned_at_any_speed_ + 1, enough);
         }
         run_ = 0;
         last_ = effort;
@@ -57,16 +57,16 @@ class FrozenEffortGate {
     }
 
     [[nodiscard]] constexpr int limit() const noexcept {
-        const int longest = learned_ < enough ? longest_of_all_ : longest_;
-        return learned_of_all_ < enough ? limit_ : std::min(limit_, 2 * longest + 6);
+        const int longest = learned_ < enough ? longest_at_any_speed_ : longest_;
+        return learned_at_any_speed_ < enough ? limit_ : std::min(limit_, 2 * longest + 6);
     }
 
     int limit_;
     int run_ = 0;
     int longest_ = 1;
     int learned_ = 0;
-    int longest_of_all_ = 1; ///< also of the joint at rest, whose effort changes less
-    int learned_of_all_ = 0;
+    int longest_at_any_speed_ = 1; ///< also of the joint at rest, whose effort changes less
+    int learned_at_any_speed_ = 0;
     double last_ = 0;
     double smallest_change_ = 0;
     double begin_rad_ = 0;

@@ -294,15 +294,15 @@ class MotionGate : private MotionEvidence {
     /// Refuses the run that ends with this reading, and what goes on from it.
     constexpr Verdict lose(const EncoderReading& reading) noexcept {
         const bool new_here = !lost() || !connects(refused_, run());
-        const bool at_zero =
-            begins_at_zero(run().first(), run().begin_line(0, config_.period_ns)) && !takes_back_jump(run());
+        const bool at_zero = begins_at_zero(run().first(), run().begin_line(0, config_.period_ns)) &&
+                             !reverses_jump_before(run());
         zero_lost_ = at_zero || (zero_lost_ && !new_here);
         begin_loss(run());
         candidate_.interrupt();
         return refuse(reading, Reason::position_lost);
     }
 
-    /// Refuses a run, and what goes on from it. While the joint is lost already, the loss goes on.
+    /// Refuses a run and the readings that continue it. A loss that has begun keeps its jump and its count.
     constexpr void begin_loss(const MotionRun& run) noexcept {
         if (!lost()) {
             lost_jump_rad_ = magnitude(jump_rad_) > 2 * jump_error_rad_ ? jump_rad_ : 0;
@@ -317,19 +317,23 @@ class MotionGate : private MotionEvidence {
         forget_jumps();
     }
     constexpr void count_lost(int readings) noexcept {
-        lost_readings_ = std::min(lost_readings_ + std::min(readings, lost_for_good()), lost_for_good());
+        lost_readings_ =
+            std::min(lost_readings_ + std::min(readings, most_lost_readings()), most_lost_readings());
     }
 
     /// Returns whether the joint is lost for so long that the limits allow any position, and the run does not
     /// take back the jump with which that began.
     [[nodiscard]] constexpr bool stays_elsewhere() const noexcept {
-        return lost_readings_ == lost_for_good() && lost_jump_rad_ != 0 && !takes_back(lost_jump_rad_);
+        return lost_readings_ == most_lost_readings() && lost_jump_rad_ != 0 &&
+               !reverses_jump(lost_jump_rad_);
     }
 
-    /// Readings after which being within the limits is no evidence.
-    [[nodiscard]] constexpr int lost_for_good() const noexcept { return 50 * config_.qualification.readings; }
+    /// Number of refused readings after which a position within the limits is no evidence.
+    [[nodiscard]] constexpr int most_lost_readings() const noexcept {
+        return 50 * config_.qualification.readings;
+    }
 
-    int lost_readings_ = 0;    ///< that go on from those that are refused
+    int lost_readings_ = 0;    ///< that continue the refused run
     double lost_jump_rad_ = 0; ///< with which they began; 0: with a silence
     std::uint8_t off_ = 0;     ///< which of the last eight readings led from no other, a bit each
     std::uint64_t refusals_ = 0;

@@ -183,10 +183,10 @@ class MotionEvidence {
                (expected || !restarted_at_zero(run));
     }
 
-    /// Returns whether the trusted readings are so many that no earlier ones count: as long as the silence or
-    /// the jump before them, at most `longest_trial_ns`.
+    /// Returns whether the readings have been trusted for as long as the silence or the jump before them
+    /// lasted (at most `longest_trial_ns`), so that earlier ones are no evidence against them.
     [[nodiscard]] constexpr bool is_established() const noexcept {
-        return established_.empty() || trusted_.last().stamp_ns >= established_ns_;
+        return established_.empty() || trusted_.last().stamp_ns >= trial_end_ns_;
     }
 
     /// Returns whether the run goes on from readings that were trusted for longer than the last ones, which
@@ -198,7 +198,7 @@ class MotionEvidence {
         const MotionLine last = trusted_.end_line(0, config_.period_ns);
         const double off_rad = trusted_.first().position_rad - before.at(trusted_.first().stamp_ns);
         const double back_rad = run.first().position_rad - last.at(run.first().stamp_ns);
-        return !is_established() && run.first().stamp_ns < established_ns_ &&
+        return !is_established() && run.first().stamp_ns < trial_end_ns_ &&
                magnitude(off_rad + back_rad) <= most_left * magnitude(off_rad) &&
                !begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
                tolerance_.reaches(established_.last(), run.first()) &&
@@ -211,7 +211,7 @@ class MotionEvidence {
             established_ = trusted_;
         }
         const std::int64_t silence_ns = run.first().stamp_ns - established_.last().stamp_ns;
-        established_ns_ = run.last().stamp_ns + std::min(silence_ns, longest_trial_ns);
+        trial_end_ns_ = run.last().stamp_ns + std::min(silence_ns, longest_trial_ns);
         trusted_ = run;
     }
 
@@ -235,19 +235,19 @@ class MotionEvidence {
                 : tolerance_.reach(seconds_between(line.end_ns, first.stamp_ns), first.step_rad);
     }
 
-    /// What jumped before says nothing any more: a reading is trusted.
+    /// Forgets the jumps before a trusted reading.
     constexpr void forget_jumps() noexcept { jump_rad_ = jump_before_rad_ = 0; }
 
     /// Returns whether a run takes back the jump shortly before, as a bit does that is stuck for a while. An
     /// encoder that restarts goes to its zero from wherever the joint is.
-    [[nodiscard]] constexpr bool takes_back_jump(const MotionRun& run) const noexcept {
+    [[nodiscard]] constexpr bool reverses_jump_before(const MotionRun& run) const noexcept {
         const std::int64_t apart_ns = run.first().stamp_ns - jump_ns_;
         return apart_ns <= config_.max_age_ns && -apart_ns <= config_.max_age_ns &&
-               run.first().stamp_ns - jump_before_ns_ <= longest_trial_ns && takes_back(jump_before_rad_);
+               run.first().stamp_ns - jump_before_ns_ <= longest_trial_ns && reverses_jump(jump_before_rad_);
     }
 
-    /// Returns whether the last jump is as large as an earlier one, in the other direction.
-    [[nodiscard]] constexpr bool takes_back(double earlier_rad) const noexcept {
+    /// Returns whether the last jump is as large as `earlier_rad`, in the other direction.
+    [[nodiscard]] constexpr bool reverses_jump(double earlier_rad) const noexcept {
         return magnitude(jump_rad_) > 2 * jump_error_rad_ &&
                magnitude(jump_rad_ + earlier_rad) <= 2 * jump_error_rad_;
     }
@@ -305,7 +305,7 @@ class MotionEvidence {
         const bool long_enough =
             !time_known_ || seconds_between(trusted_.last().stamp_ns, run.first().stamp_ns) >= fastest_boot_s;
         return long_enough && begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
-               !stood_at(run.first()) && !takes_back_jump(run);
+               !stood_at(run.first()) && !reverses_jump_before(run);
     }
 
     // What MotionGate changes: NOLINTBEGIN(*-non-private-member-variables-in-classes)
@@ -315,7 +315,7 @@ class MotionEvidence {
     ZeroWatch zero_;                      ///< readings that count from the zero
     MotionRun trusted_;                   ///< the positions of the joint
     MotionRun established_;               ///< trusted before them, and for longer
-    std::int64_t established_ns_ = 0;     ///< from here on `trusted_` counts alone
+    std::int64_t trial_end_ns_ = 0;       ///< from here on `trusted_` counts alone
     std::int64_t jump_ns_ = 0;            ///< when the last run began that is not trusted
     double jump_rad_ = 0;                 ///< from the readings before it; 0: after a silence
     double jump_before_rad_ = 0;          ///< of the run before
