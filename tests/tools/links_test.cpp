@@ -73,7 +73,7 @@ TEST_CASE("every link of the documentation leads to a file") {
 
 TEST_CASE("every source file that the documentation names exists") {
     const std::vector<std::string> paths = source_paths();
-    const std::regex source(R"(`([\w/.]+\.[ch]pp)`)"); // the last parts of a path, or all of it
+    const std::regex source(R"(`([\w/.-]+\.[ch]pp)`)"); // the last parts of a path, or all of it
     const std::set<std::string> elsewhere{"include/robot_model.hpp", "robot_model.hpp", // what `start` writes
                                           "dm_motor_control.cpp"};                      // a manufacturer's
     std::size_t named = 0;
@@ -84,8 +84,8 @@ TEST_CASE("every source file that the documentation names exists") {
         CAPTURE(document);
         for (const std::string& name : matches(document, source)) {
             CAPTURE(name);
-            const auto names_it = [&](const std::string& path) { return path.ends_with("/" + name); };
-            CHECK((elsewhere.contains(name) || std::ranges::any_of(paths, names_it)));
+            const auto is_named = [&](const std::string& path) { return path.ends_with("/" + name); };
+            CHECK((elsewhere.contains(name) || std::ranges::any_of(paths, is_named)));
             ++named;
         }
     }

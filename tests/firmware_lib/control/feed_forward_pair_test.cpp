@@ -30,6 +30,14 @@ struct PairRun {
         forward.begin(0, &start);
     }
 
+    /// The learners: first the one that a test lets the feed-forward use, which forecasts 50 N·m.
+    std::array<ToldLearner*, 2> used_and_other(bool first_is_used) {
+        std::array learners{&first, &second};
+        std::ranges::rotate(learners, learners.begin() + (first_is_used ? 0 : 1));
+        learners[0]->forecast = 50;
+        return learners;
+    }
+
     void go(double seconds) {
         largest_step = 0;
         least = 100;
@@ -64,16 +72,14 @@ TEST_CASE("of two learners the more accurate one is used, and they are exchanged
 TEST_CASE("where one learner has no prediction the other one's is used at once if it was right") {
     for (const bool first_is_used : {true, false}) {
         PairRun run;
-        ToldLearner& used = first_is_used ? run.first : run.second;
-        ToldLearner& other = first_is_used ? run.second : run.first;
-        used.forecast = 50;
-        other.forecast = 52; // right, too; the nominal torque has an error of 40 N·m
+        const auto [used, other] = run.used_and_other(first_is_used);
+        other->forecast = 52; // right, too; the nominal torque has an error of 40 N·m
         run.go(3);
-        other.forecast = 50;
-        used.knows = false;
+        other->forecast = 50;
+        used->knows = false;
         run.go(0.02);
         CHECK(run.last == Approx(50).margin(0.5));
-        other.knows = false;
+        other->knows = false;
         run.go(1);
         CHECK(run.last == Approx(10));
     }
@@ -82,12 +88,10 @@ TEST_CASE("where one learner has no prediction the other one's is used at once i
 TEST_CASE("a rejected forecast is not commanded in place of one that is unknown") {
     for (const bool first_is_used : {true, false}) {
         PairRun run;
-        ToldLearner& used = first_is_used ? run.first : run.second;
-        ToldLearner& other = first_is_used ? run.second : run.first;
-        used.forecast = 50;
-        other.forecast = -30; // an error of 80 N·m; the nominal torque, 10 N·m, has one of 40
+        const auto [used, other] = run.used_and_other(first_is_used);
+        other->forecast = -30; // an error of 80 N·m; the nominal torque, 10 N·m, has one of 40
         run.go(3);
-        used.knows = false;
+        used->knows = false;
         run.go(1);
         CHECK(run.least >= 9);
     }

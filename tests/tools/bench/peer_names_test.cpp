@@ -31,7 +31,7 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-/// The libraries that a literal of the file names, as a word in any case.
+/// The libraries whose names a literal of the file contains, in capitals or not.
 std::set<std::string> named_in(const std::filesystem::path& file, const std::set<std::string>& names) {
     std::set<std::string> found;
     for (const std::string& literal : string_literals(dfdyn::tools::read_file(file))) {

@@ -208,20 +208,28 @@ struct Run {
         double largest = 0;
         for (const Sent& sent : traffic) {
             const auto found = before.find(key(sent));
-            if (sent.role != Sent::Role::joints || found == before.end() ||
-                sent.frame.data == found->second->frame.data) {
-                continue;
+            if (sent.role == Sent::Role::joints && found != before.end() &&
+                sent.frame.data != found->second->frame.data) {
+                largest = std::max(largest, change_rad(boards, found->second->frame, sent.frame));
             }
-            for (dfdyn::tools::BusBoard& board : boards) {
-                const hal::Decoded one = board.board.decode(found->second->frame);
-                const hal::Decoded other = board.board.decode(sent.frame);
-                for (int k = 0; k < std::min(one.joints, other.joints); ++k) {
-                    const auto joint = static_cast<std::size_t>(k);
-                    const bool known =
-                        one.joint[joint].position_reason != hal::Reason::waiting_for_position &&
-                        other.joint[joint].position_reason != hal::Reason::waiting_for_position;
-                    const double change = other.joint[joint].position_rad - one.joint[joint].position_rad;
-                    largest = known ? std::max(largest, std::abs(change)) : largest;
+        }
+        return largest;
+    }
+
+    /// Largest distance between the positions of two frames, of those that both have.
+    static double change_rad(std::vector<dfdyn::tools::BusBoard>& boards, const hal::Frame& good,
+                             const hal::Frame& faulty) {
+        const auto known = [](const auto& joint) {
+            return joint.position_reason != hal::Reason::waiting_for_position;
+        };
+        double largest = 0;
+        for (dfdyn::tools::BusBoard& board : boards) {
+            const hal::Decoded one = board.board.decode(good);
+            const hal::Decoded other = board.board.decode(faulty);
+            for (std::size_t k = 0; k < static_cast<std::size_t>(std::min(one.joints, other.joints)); ++k) {
+                if (known(one.joint[k]) && known(other.joint[k])) {
+                    largest =
+                        std::max(largest, std::abs(other.joint[k].position_rad - one.joint[k].position_rad));
                 }
             }
         }
