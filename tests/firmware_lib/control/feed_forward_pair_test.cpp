@@ -32,10 +32,9 @@ struct PairRun {
 
     /// The learners: first the one that a test lets the feed-forward use, which forecasts 50 N·m.
     std::array<ToldLearner*, 2> used_and_other(bool first_is_used) {
-        std::array learners{&first, &second};
-        std::ranges::rotate(learners, learners.begin() + (first_is_used ? 0 : 1));
-        learners[0]->forecast = 50;
-        return learners;
+        ToldLearner* const used = first_is_used ? &first : &second;
+        used->forecast = 50;
+        return {used, first_is_used ? &second : &first};
     }
 
     void go(double seconds) {
