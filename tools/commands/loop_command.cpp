@@ -74,17 +74,38 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
         ->delimiter(',')
         ->check(number_in(0.0, 1.0))
         ->type_name("F");
+}
+
+void add_stop(CLI::App& command, StopMode& stop) {
     command
         .add_option_function<std::string>(
             "--stop",
-            [&limits](const std::string& mode) {
-                limits.mode = mode == "limp" ? StopMode::limp : StopMode::hold;
-            },
+            [&stop](const std::string& mode) { stop = mode == "limp" ? StopMode::limp : StopMode::hold; },
             "After a stop: hold the arm until told to end, or go limp 0.2 s after the brakes were "
             "requested")
         ->check(one_of({"hold", "limp"}))
         ->default_str("hold")
         ->type_name("hold|limp");
+}
+
+/// Adds where the arm is: on a bus, or simulated.
+void add_arm(CLI::App& command, LoopOptions& options) {
+    command.add_option("--bus", options.bus, "Devices on the bus: docs/reference/can.md")
+        ->type_name("bus.json");
+    command.add_option("--can", options.interface, "The arm is here")->type_name("IFACE");
+    command.add_flag("--simulate", options.simulate, "The arm is simulated, in simulated time");
+}
+
+std::string examples_and_status() {
+    return "Examples:\n"
+           "  dfdyn loop --simulate --robot arm.urdf --scenario s.json --model m.json --duration 90 -o out\n"
+           "  dfdyn loop --robot arm.urdf --scenario s.json --model m.json --bus bus.json --can can0\n"
+           "With --can the signal SIGUSR1 takes what is learned out of the torque, and back in, without a "
+           "step.\n"
+           "Kinds of faults of a scenario: " +
+           fault_kind_names("and") +
+           ".\n"
+           "Exit status: 0 done, 1 the loop stopped by itself for safety, 2 bad usage or input.";
 }
 
 } // namespace
@@ -103,10 +124,7 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         ->required()
         ->type_name("S.json");
     add_model(*command, *options);
-    command->add_option("--bus", options->bus, "Devices on the bus: docs/reference/can.md")
-        ->type_name("bus.json");
-    command->add_option("--can", options->interface, "The arm is here")->type_name("IFACE");
-    command->add_flag("--simulate", options->simulate, "The arm is simulated, in simulated time");
+    add_arm(*command, *options);
     command->add_option("--duration", options->duration_s, "Seconds; with --can none: until Ctrl-C")
         ->check(positive_number())
         ->type_name("S");
@@ -115,6 +133,7 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         ->capture_default_str()
         ->type_name("S");
     add_limits(*command, options->limits);
+    add_stop(*command, options->limits.mode);
     command
         ->add_option(
             "-o,--output", options->folder,
@@ -122,16 +141,7 @@ void add_loop_command(CLI::App& app, Command& chosen) {
             "without --duration), and changes.json: changes of the arm that the learner's monitor found")
         ->type_name("DIR");
     add_json_option(*command, options->json);
-    command->footer(
-        "Examples:\n"
-        "  dfdyn loop --simulate --robot arm.urdf --scenario s.json --model m.json --duration 90 -o out\n"
-        "  dfdyn loop --robot arm.urdf --scenario s.json --model m.json --bus bus.json --can can0\n"
-        "With --can the signal SIGUSR1 takes what is learned out of the torque, and back in, without a "
-        "step.\n"
-        "Kinds of faults of a scenario: " +
-        fault_kind_names("and") +
-        ".\n"
-        "Exit status: 0 done, 1 the loop stopped by itself for safety, 2 bad usage or input.");
+    command->footer(examples_and_status());
     command->callback([options, &chosen] { chosen = [options] { return run_loop_command(*options); }; });
 }
 

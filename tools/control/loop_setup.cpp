@@ -161,24 +161,25 @@ JointVector given_bandwidth(const std::vector<double>& given, const Robot& robot
     return bandwidth;
 }
 
-std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenario& scenario,
-                                               const std::string& source, const LoopModel* learned,
-                                               int delay_ticks, const LoopLimits& limits) {
-    const ControllerModel& controller = scenario.controller;
-    if (controller.kind != ControllerKind::feed_forward) {
-        throw InputError(source + ": controller.kind: expected feed_forward, found " +
-                         (controller.kind == ControllerKind::computed_torque ? "computed_torque"
-                                                                             : "gravity_compensation"));
+namespace {
+
+void require_feed_forward(ControllerKind kind, const std::string& source) {
+    if (kind != ControllerKind::feed_forward) {
+        throw InputError(
+            source + ": controller.kind: expected feed_forward, found " +
+            (kind == ControllerKind::computed_torque ? "computed_torque" : "gravity_compensation"));
     }
-    const auto joints = static_cast<int>(robot.joints.size());
+}
+
+LoopConfig loop_config(const Robot& robot, const Scenario& scenario, const std::string& source,
+                       const JointVector& start, int delay_ticks, const LoopLimits& limits) {
+    const ControllerModel& controller = scenario.controller;
     LoopConfig config;
     config.period_s = 1 / controller.rate_hz;
     config.delay_ticks = delay_ticks;
     config.gains = {controller.position_gain, controller.velocity_gain};
     config.filter = loop_filter(scenario);
     config.torque_limit = torque_limit(robot, scenario, source);
-    const auto make = [&] { return make_task(scenario.task, robot, config.period_s, scenario.seed); };
-    const JointVector start = make()->next().position;
     config.safe_stop = default_limits(robot, scenario, config.torque_limit, start);
     config.bandwidth = limits.observer_bandwidth.empty()
                            ? default_bandwidth(robot, scenario, start, delay_ticks)
@@ -192,22 +193,40 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
     if (!limits.speed.empty()) {
         config.safe_stop.speed_limit = per_joint(limits.speed, robot, "--speed-limit");
     }
+    return config;
+}
 
+/// Returns the learned part of the feed-forward, with what an earlier run learned.
+LearnedFeedForward learned_part(const Robot& robot, const LoopModel& learned, int knot_ticks,
+                                const LoopLimits& limits) {
+    const MonitorSetup monitor = monitor_setup(learned.model, &robot, learned.source);
+    std::optional<ContactModel> contact;
+    if (limits.on_contact != FindingAction::report) {
+        contact = contact_limits(learned.model, limits.contact_rate_per_hour, learned.source);
+    }
+    LearnedFeedForward model(learned.model, learned.from_prior, static_cast<int>(robot.joints.size()),
+                             knot_ticks, learned.source, &monitor, contact ? &*contact : nullptr);
+    if (!learned.learned.empty() && !model.restore(learned.learned)) {
+        throw InputError(learned.learned_source + ": expected what " + learned.source +
+                         " has learned, whole, found something else");
+    }
+    return model;
+}
+
+} // namespace
+
+std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenario& scenario,
+                                               const std::string& source, const LoopModel* learned,
+                                               int delay_ticks, const LoopLimits& limits) {
+    require_feed_forward(scenario.controller.kind, source);
+    const auto make = [&] {
+        return make_task(scenario.task, robot, 1 / scenario.controller.rate_hz, scenario.seed);
+    };
+    LoopConfig config = loop_config(robot, scenario, source, make()->next().position, delay_ticks, limits);
     std::optional<LearnedFeedForward> model;
     if (learned != nullptr) {
         config.knot_ticks = knot_ticks(config.period_s, learned->model.sample_period_s, learned->source);
-        const MonitorSetup monitor = monitor_setup(learned->model, &robot, learned->source);
-        const std::optional<ContactModel> contact =
-            limits.on_contact == FindingAction::report
-                ? std::nullopt
-                : std::optional(
-                      contact_limits(learned->model, limits.contact_rate_per_hour, learned->source));
-        model.emplace(learned->model, learned->from_prior, joints, config.knot_ticks, learned->source,
-                      &monitor, contact ? &*contact : nullptr);
-        if (!learned->learned.empty() && !model->restore(learned->learned)) {
-            throw InputError(learned->learned_source + ": expected what " + learned->source +
-                             " has learned, whole, found something else");
-        }
+        model.emplace(learned_part(robot, *learned, config.knot_ticks, limits));
     }
     JointVector learned_limit = config.torque_limit / 2;
     if (!limits.learned_limit.empty()) {

@@ -63,6 +63,25 @@ bool suspect(Diagnosis& diagnosis, std::vector<Suspicion> suspicions) {
     return refused(diagnosis);
 }
 
+/// Finds the effects, and pushes at rest in what they leave.
+void fit(DiagnosisWork& work, const FitOptions& how) {
+    const DiagnosisSignals& signals = *work.signals;
+    work.fitted_effects = find_effects(signals, work.measured, how);
+    work.rest = work.measured - signals.nominal - work.fitted_effects.all(signals);
+    work.pushes = stationary_contacts(signals, work.fitted_effects, work.measured, work.rest);
+    for (const StationaryContact& push : work.pushes) {
+        work.rest.col(static_cast<Eigen::Index>(push.joint)) -= push.share;
+    }
+}
+
+/// Lists the outputs with dependences that have no name.
+void add_unexplained(DiagnosisWork& work) {
+    std::vector<Unexplained>& unexplained = work.diagnosis.unexplained;
+    unexplained = unnamed_dependences(*work.signals, work.measured, work.fitted_effects);
+    add_rest(unexplained,
+             unexplained_rest(*work.signals, work.measured, work.rest, work.fitted_effects.noise));
+}
+
 } // namespace
 
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
@@ -87,13 +106,8 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
         work.extended = signals->nominal;
         return work;
     }
-    FitOptions how{work.gains_known, 1, options.progress, options.effects};
-    work.fitted_effects = find_effects(*signals, work.measured, how);
-    work.rest = work.measured - signals->nominal - work.fitted_effects.all(*signals);
-    work.pushes = stationary_contacts(*signals, work.fitted_effects, work.measured, work.rest);
-    for (const StationaryContact& push : work.pushes) {
-        work.rest.col(static_cast<Eigen::Index>(push.joint)) -= push.share;
-    }
+    const FitOptions how{work.gains_known, 1, options.progress, options.effects};
+    fit(work, how);
     work.diagnosis.findings =
         findings_of(*signals, work.fitted_effects, work.pushes, work.rest, work.diagnosis.output_names);
     if (options.measure) {
@@ -104,9 +118,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     name_by_least_squares(work);
     work.diagnosis.nuisance_estimates = estimate_nuisances(*signals, work.fitted_effects, work.torque_gains);
     use_units_of_joints(work.diagnosis, robot);
-    work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.fitted_effects);
-    add_rest(work.diagnosis.unexplained,
-             unexplained_rest(*signals, work.measured, work.rest, work.fitted_effects.noise));
+    add_unexplained(work);
     doubt_useless_findings(work.diagnosis);
     return work;
 }

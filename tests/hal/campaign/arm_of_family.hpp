@@ -113,6 +113,25 @@ class ReceivingAssembly : public ReceivingArm {
     Assembly assembly_;
 };
 
+/// Takes each joint's step and the position of its encoder's zero from what the boards decode.
+template <class Boards>
+void find_scales(Boards boards, CampaignArm& arm) {
+    for (std::size_t board = 0; board < boards.size(); ++board) {
+        const wire::Frames frames = arm.frames(board, {});
+        for (std::size_t part = 0; part < frames.count; ++part) {
+            const hal::Decoded decoded = boards[board].decode(frames.frame[part]);
+            for (int i = 0; i < decoded.joints; ++i) {
+                const hal::JointValue& value = decoded.joint[static_cast<std::size_t>(i)];
+                const auto joint = static_cast<std::size_t>(value.joint);
+                if (value.position_reason != hal::Reason::waiting_for_position) {
+                    arm.step_rad[joint] = value.step_rad;
+                    arm.zero_rad[joint] = value.position_rad - value.from_zero_rad;
+                }
+            }
+        }
+    }
+}
+
 /// An arm with these boards, which receives an output.
 template <class Family, class Output>
 CampaignArm arm_with_output(const std::string& name, const Output& output) {
@@ -137,21 +156,7 @@ CampaignArm arm_with_output(const std::string& name, const Output& output) {
                                 output);
         return std::make_unique<ReceivingAssembly<Assembly>>(trigger, assembly);
     };
-    auto decoders = boards;
-    for (std::size_t board = 0; board < boards.size(); ++board) {
-        const wire::Frames frames = arm.frames(board, {});
-        for (std::size_t part = 0; part < frames.count; ++part) {
-            const hal::Decoded decoded = decoders[board].decode(frames.frame[part]);
-            for (int i = 0; i < decoded.joints; ++i) {
-                const hal::JointValue& value = decoded.joint[static_cast<std::size_t>(i)];
-                const auto joint = static_cast<std::size_t>(value.joint);
-                if (value.position_reason != hal::Reason::waiting_for_position) {
-                    arm.step_rad[joint] = value.step_rad;
-                    arm.zero_rad[joint] = value.position_rad - value.from_zero_rad;
-                }
-            }
-        }
-    }
+    find_scales(boards, arm);
     if constexpr (requires { Family::on_wire::step_rad; }) {
         arm.step_rad.fill(Family::on_wire::step_rad);
     }

@@ -120,8 +120,8 @@ void late_answers(FaultSite& site) {
     });
     site.sort();
 }
-void overload(FaultSite& site) {
-    std::vector<std::size_t> waiting;
+/// Puts frames of other devices onto the bus.
+void add_other_traffic(FaultSite& site) {
     std::uniform_real_distribution<double> load(0.7, 1.15);
     const double others = load(site.engine);
     Traffic dummy;
@@ -137,29 +137,45 @@ void overload(FaultSite& site) {
     }
     site.traffic.insert(site.traffic.end(), dummy.begin(), dummy.end());
     site.sort();
-    std::int64_t free_ns = site.begin_ns;
-    Traffic queue;
-    Traffic done;
-    const auto serve_until = [&](std::int64_t time_ns) {
-        while (!queue.empty() && free_ns < time_ns) {
+}
+
+/// A bus that sends one frame at a time, the lowest identifier first.
+class Arbitration {
+  public:
+    explicit Arbitration(std::int64_t free_ns) : free_ns_(free_ns) {}
+
+    void wait(const Sent& sent) { queue_.push_back(sent); }
+    void serve_until(std::int64_t time_ns) {
+        while (!queue_.empty() && free_ns_ < time_ns) {
             const auto first =
-                std::ranges::min_element(queue, {}, [](const Sent& sent) { return sent.frame.id; });
-            free_ns += 125 * bus_us;
-            move(*first, free_ns - first->true_ns);
-            done.push_back(*first);
-            queue.erase(first);
+                std::ranges::min_element(queue_, {}, [](const Sent& sent) { return sent.frame.id; });
+            free_ns_ += 125 * bus_us;
+            move(*first, free_ns_ - first->true_ns);
+            sent_.push_back(*first);
+            queue_.erase(first);
         }
-        free_ns = std::max(free_ns, time_ns);
-    };
+        free_ns_ = std::max(free_ns_, time_ns);
+    }
+    Traffic sent() && { return std::move(sent_); }
+
+  private:
+    std::int64_t free_ns_;
+    Traffic queue_, sent_;
+};
+
+void overload(FaultSite& site) {
+    add_other_traffic(site);
+    Arbitration bus(site.begin_ns);
     // Not the SYNCs: a drive measures when it receives one.
     const auto waits = [](const Sent& sent) { return sent.role != Role::sync; };
     for (const Sent& sent : site.traffic) {
         if (site.covers(sent) && waits(sent)) {
-            serve_until(sent.true_ns - 125 * bus_us);
-            queue.push_back(sent);
+            bus.serve_until(sent.true_ns - 125 * bus_us);
+            bus.wait(sent);
         }
     }
-    serve_until(site.end_ns + 200 * bus_period);
+    bus.serve_until(site.end_ns + 200 * bus_period);
+    Traffic done = std::move(bus).sent();
     site.remove(waits);
     std::erase_if(done, [&](const Sent& sent) { return sent.true_ns >= site.end_ns; });
     site.traffic.insert(site.traffic.end(), done.begin(), done.end());

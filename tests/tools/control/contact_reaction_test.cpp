@@ -60,55 +60,77 @@ struct Outcome {
     std::string summary;
 };
 
+/// Takes an outcome from a loop while it runs.
+class Watch {
+  public:
+    Watch(ClosedLoop& loop, double end_of_push_s) : loop_(loop), end_s_(end_of_push_s) {}
+
+    void observe(const ClosedLoopInstant& instant) {
+        const double q = loop_.plant().truth().position[0];
+        if (instant.time_s < push_s) {
+            at_push_ = q;
+        } else if (instant.time_s < end_s_) {
+            observe_push(instant, q);
+        } else if (instant.time_s >= end_s_ + 1) {
+            const Reference& reference = loop_.loop().reference();
+            outcome_.speed_after = std::max(outcome_.speed_after, std::abs(reference.velocity[0]));
+            outcome_.error_after = std::abs(instant.error[0]);
+            outcome_.jump = std::abs(reference.position[0] - stopped_at_);
+        }
+    }
+
+    Outcome outcome() {
+        const ControlLoop& loop = loop_.loop();
+        outcome_.command /= std::max(pressed_, 1);
+        outcome_.gravity /= std::max(pressed_, 1);
+        outcome_.actions = loop.actions();
+        outcome_.reactions = loop_.reactions();
+        outcome_.state = loop.state();
+        outcome_.cause = loop.cause();
+        std::ostringstream text;
+        print_loop(text, loop);
+        print_reactions(text, loop_.reactions());
+        outcome_.summary = text.str();
+        return outcome_;
+    }
+
+  private:
+    void observe_push(const ClosedLoopInstant& instant, double q) {
+        const FeedForward& feed_forward = loop_.loop().feed_forward();
+        const std::uint64_t samples = feed_forward.learned()->counters().learned;
+        outcome_.moved = std::max(outcome_.moved, std::abs(q - at_push_));
+        outcome_.error_at_end = std::abs(instant.error[0]);
+        const bool reacted = !loop_.loop().actions().empty();
+        outcome_.contact_lost += reacted && feed_forward.contact_joint() < 0 ? 1 : 0;
+        stopped_at_ = loop_.loop().reference().position[0];
+        learned_ = instant.time_s < push_s + 0.15 ? samples : learned_;
+        outcome_.learned_in_contact = samples - learned_;
+        if (instant.time_s >= end_s_ - 0.1) {
+            outcome_.command += instant.command[0];
+            outcome_.gravity += weight(q);
+            ++pressed_;
+        }
+    }
+
+    ClosedLoop& loop_;
+    double end_s_;
+    Outcome outcome_;
+    double at_push_ = 0, stopped_at_ = 0;
+    int pressed_ = 0;
+    std::uint64_t learned_ = 0;
+};
+
 Outcome run(FindingAction reaction, double size_nm = push_nm, double for_s = 0.3,
             const BusDescription* bus = nullptr) {
-    const double end_s = push_s + for_s;
     const std::string fault = R"([{"kind": "push", "joint": 1, "torque_nm": )" + std::to_string(size_nm) +
                               R"(, "from_s": 6, "for_s": )" + std::to_string(for_s) + "}]";
     LoopModel model = learned_model();
     LoopLimits limits;
     limits.on_contact = reaction;
     ClosedLoop loop(test_pendulum(), scenario_with(fault), "test", &model, bus, limits);
-    Outcome outcome;
-    double at_push = 0, stopped_at = 0;
-    int pressed = 0;
-    std::uint64_t learned = 0;
-    loop.run_to(16, [&](const ClosedLoopInstant& instant) {
-        const double t = instant.time_s, q = loop.plant().truth().position[0];
-        const std::uint64_t samples = loop.loop().feed_forward().learned()->counters().learned;
-        if (t < push_s) {
-            at_push = q;
-        } else if (t < end_s) {
-            outcome.moved = std::max(outcome.moved, std::abs(q - at_push));
-            outcome.error_at_end = std::abs(instant.error[0]);
-            const bool reacted = !loop.loop().actions().empty();
-            outcome.contact_lost += reacted && loop.loop().feed_forward().contact_joint() < 0 ? 1 : 0;
-            stopped_at = loop.loop().reference().position[0];
-            learned = t < push_s + 0.15 ? samples : learned;
-            outcome.learned_in_contact = samples - learned;
-            if (t >= end_s - 0.1) {
-                outcome.command += instant.command[0];
-                outcome.gravity += weight(q);
-                ++pressed;
-            }
-        } else if (t >= end_s + 1) {
-            const Reference& reference = loop.loop().reference();
-            outcome.speed_after = std::max(outcome.speed_after, std::abs(reference.velocity[0]));
-            outcome.error_after = std::abs(instant.error[0]);
-            outcome.jump = std::abs(reference.position[0] - stopped_at);
-        }
-    });
-    outcome.command /= std::max(pressed, 1);
-    outcome.gravity /= std::max(pressed, 1);
-    outcome.actions = loop.loop().actions();
-    outcome.reactions = loop.reactions();
-    outcome.state = loop.loop().state();
-    outcome.cause = loop.loop().cause();
-    std::ostringstream text;
-    print_loop(text, loop.loop());
-    print_reactions(text, loop.reactions());
-    outcome.summary = text.str();
-    return outcome;
+    Watch watch(loop, push_s + for_s);
+    loop.run_to(16, [&](const ClosedLoopInstant& instant) { watch.observe(instant); });
+    return watch.outcome();
 }
 
 void check_detected(const Outcome& outcome, FindingAction reaction) {

@@ -19,8 +19,7 @@ namespace faulty_loop_test {
 struct Family {
     std::string name, text;
 };
-std::vector<Family> families(const TemporaryDirectory& directory) {
-    directory.write("joints.dbc", R"(VERSION ""
+constexpr const char* joints_dbc = R"(VERSION ""
 BU_: Arm Host
 BO_ 288 Joints: 8 Arm
  SG_ First : 0|32@1- (0.000001,0) [-8|8] "rad" Host
@@ -28,7 +27,9 @@ BO_ 288 Joints: 8 Arm
 BO_ 289 Efforts: 8 Arm
  SG_ FirstTorque : 0|32@1- (0.001,0) [-200|200] "Nm" Host
  SG_ SecondTorque : 32|32@1- (0.001,0) [-200|200] "Nm" Host
-)");
+)";
+std::vector<Family> families(const TemporaryDirectory& directory) {
+    directory.write("joints.dbc", joints_dbc);
     const auto bus = [](const std::string& trigger, const std::string& joints, const std::string& output) {
         return R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 500, "trigger": )" +
                trigger + R"(, "joints": {)" + joints + R"(}, "output": {)" + output + "}}";

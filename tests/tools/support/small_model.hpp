@@ -94,23 +94,11 @@ inline tools::InputModel small_motion(std::mt19937_64& engine, std::normal_distr
     return motion;
 }
 
-/// The same model with physics. `structure` is P, SP, SP2 or SPK; the outputs are a wrench at a sensor on
-/// link 1, or the torques of the two joints. The motion comes from DFR, or with input STD from measured
-/// derivatives.
-inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const std::string& structure,
-                                               tools::InputKind kind, bool wrench) {
-    tools::TrainedModel model = small_model(engine, kind);
+/// Draws the numbers of `structure` for the selected columns of a small arm.
+inline void draw_learned(std::mt19937_64& engine, const std::string& structure, std::size_t outputs,
+                         tools::PhysicsModel& physics) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> positive(0.5, 2);
-    if (kind == tools::InputKind::STD) {
-        model.input.derivatives = tools::Derivatives::measured;
-        model.input.lags = 0;
-        model.input.position_noise_bound = 0;
-    }
-    const std::size_t outputs = wrench ? 6 : 2;
-    tools::PhysicsModel physics = small_arm(wrench);
-    physics.motion = small_motion(engine, normal, model.input);
-    physics.motion_limit = {10, 50, 100, 10, 50, 100};
     const std::size_t columns = physics.selected.size();
     physics.parameter_names.assign(columns, "parameter");
     physics.column_scale = numbers(engine, columns, positive);
@@ -124,6 +112,24 @@ inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const st
     if (structure == "SPK") {
         physics.coupling = numbers(engine, outputs * columns * 6, normal);
     }
+}
+
+/// The same model with physics. `structure` is P, SP, SP2 or SPK; the outputs are a wrench at a sensor on
+/// link 1, or the torques of the two joints. The motion comes from DFR, or with input STD from measured
+/// derivatives.
+inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const std::string& structure,
+                                               tools::InputKind kind, bool wrench) {
+    tools::TrainedModel model = small_model(engine, kind);
+    std::normal_distribution<double> normal;
+    if (kind == tools::InputKind::STD) {
+        model.input.derivatives = tools::Derivatives::measured;
+        model.input.lags = 0;
+        model.input.position_noise_bound = 0;
+    }
+    tools::PhysicsModel physics = small_arm(wrench);
+    physics.motion = small_motion(engine, normal, model.input);
+    physics.motion_limit = {10, 50, 100, 10, 50, 100};
+    draw_learned(engine, structure, wrench ? 6 : 2, physics);
     model.structure = structure;
     if (!wrench) {
         model.outputs.names = {"tau1", "tau2"};

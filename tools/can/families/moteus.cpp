@@ -77,43 +77,52 @@ MoteusReplies moteus_replies(FrameSpan frames) {
     return replies;
 }
 
+/// Adds a controller that answers to `host`, with the identifiers of its replies.
+void add_moteus_controller(unsigned id, std::uint32_t prefix, std::uint32_t host, const JointFit& fit,
+                           Recognition& recognition) {
+    RecognisedBoard board{
+        .name = "controller " + std::to_string(id), .entry = {{"id", id}}, .rate_hz = fit.rate_hz()};
+    if (fit.efforts == 0) {
+        recognition.unsure.push_back(
+            board.name + ": nobody asks for its torque (register 3), without which it has no efforts");
+    }
+    recognition.boards.push_back(std::move(board));
+    const std::uint32_t reply = prefix << 16U | id << 8U | host;
+    recognition.identifiers.insert({reply > 0x7FF, reply});
+    recognition.identifiers.insert({true, reply});
+}
+
+/// Recognises the controllers that answer to one host. `replies`: their number by controller.
+Recognition recognise_moteus_host(FrameSpan frames, std::uint32_t prefix, std::uint32_t host,
+                                  const std::map<unsigned, std::uint64_t>& replies) {
+    Recognition recognition;
+    recognition.quantity = "tau";
+    recognition.fields = {{"host", host}, {"prefix", prefix}};
+    std::set<unsigned> answering;
+    for (const auto& [id, count] : replies) {
+        const CodecFit fit = fit_codec(hal::MoteusController({.id = static_cast<int>(id),
+                                                              .host = static_cast<int>(host),
+                                                              .prefix = static_cast<int>(prefix)}),
+                                       frames);
+        if (fit.fits()) {
+            add_moteus_controller(id, prefix, host, fit.joint[0], recognition);
+            answering.insert(id);
+            recognition.score += 3 * static_cast<double>(count);
+        }
+    }
+    if (!answering.empty()) {
+        recognition.silent = silent_motors(frames, 1, 127, answering, [prefix](unsigned id) {
+            return hal::MoteusController({.id = static_cast<int>(id), .prefix = static_cast<int>(prefix)});
+        });
+    }
+    return recognition;
+}
+
 Recognition recognise_moteus(FrameSpan frames) {
     Recognition best;
     const MoteusReplies replies = moteus_replies(frames);
     for (const auto& [address, controllers] : replies) {
-        Recognition recognition;
-        recognition.quantity = "tau";
-        recognition.fields = {{"host", address.second}, {"prefix", address.first}};
-        std::set<unsigned> answering;
-        for (const auto& [id, count] : controllers) {
-            const CodecFit fit = fit_codec(hal::MoteusController({.id = static_cast<int>(id),
-                                                                  .host = static_cast<int>(address.second),
-                                                                  .prefix = static_cast<int>(address.first)}),
-                                           frames);
-            if (!fit.fits()) {
-                continue;
-            }
-            RecognisedBoard board{
-                .name = "controller " + std::to_string(id), .entry = {}, .rate_hz = fit.joint[0].rate_hz()};
-            board.entry = {{"id", id}};
-            answering.insert(id);
-            if (fit.joint[0].efforts == 0) {
-                recognition.unsure.push_back(
-                    "controller " + std::to_string(id) +
-                    ": nobody asks for its torque (register 3), without which it has no efforts");
-            }
-            recognition.boards.push_back(std::move(board));
-            const std::uint32_t reply = address.first << 16U | id << 8U | address.second;
-            recognition.identifiers.insert({reply > 0x7FF, reply});
-            recognition.identifiers.insert({true, reply});
-            recognition.score += 3 * static_cast<double>(count);
-        }
-        if (!answering.empty()) {
-            const int prefix = static_cast<int>(address.first);
-            recognition.silent = silent_motors(frames, 1, 127, answering, [prefix](unsigned id) {
-                return hal::MoteusController({.id = static_cast<int>(id), .prefix = prefix});
-            });
-        }
+        Recognition recognition = recognise_moteus_host(frames, address.first, address.second, controllers);
         if (recognition.score > best.score) {
             best = std::move(recognition);
         }

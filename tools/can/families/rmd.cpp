@@ -120,6 +120,31 @@ hal::RmdPosition finest_rmd_position(const std::map<unsigned, std::uint64_t>& co
 
 constexpr std::array<const char*, 3> rmd_position_names{"multi_turn", "encoder", "status"};
 
+/// Adds a motor that answers, with the identifiers of its requests and answers.
+void add_rmd_motor(int motor, const JointFit& fit, Recognition& recognition) {
+    RecognisedBoard board{
+        .name = "motor " + std::to_string(motor), .entry = {{"motor_id", motor}}, .rate_hz = fit.rate_hz()};
+    if (fit.efforts == 0) {
+        recognition.unsure.push_back(board.name +
+                                     ": nobody asks for its current (0x9C), without which it has no efforts");
+    }
+    recognition.boards.push_back(std::move(board));
+    for (const std::uint32_t base : {0x140U, 0x240U}) {
+        recognition.identifiers.insert({false, base + static_cast<std::uint32_t>(motor)});
+    }
+}
+
+/// Adds what the frames cannot tell of recognised motors.
+void add_rmd_doubts(hal::RmdPosition position, bool old, std::vector<std::string>& unsure) {
+    unsure.emplace_back("torques: efforts are currents without newton_metre_per_ampere");
+    if (position == hal::RmdPosition::encoder) {
+        unsure.emplace_back("counts_per_turn: 65536 is assumed");
+    }
+    if (position == hal::RmdPosition::status && !old) {
+        unsure.emplace_back("positions of 1 ° are too coarse to learn from: poll 0x92");
+    }
+}
+
 Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
     Recognition recognition;
     recognition.quantity = "i";
@@ -133,19 +158,8 @@ Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
         if (!fit.fits()) {
             continue;
         }
-        RecognisedBoard board{
-            .name = "motor " + std::to_string(motor), .entry = {}, .rate_hz = fit.joint[0].rate_hz()};
-        board.entry = {{"motor_id", motor}};
+        add_rmd_motor(motor, fit.joint[0], recognition);
         answering.insert(static_cast<unsigned>(motor));
-        if (fit.joint[0].efforts == 0) {
-            recognition.unsure.push_back(
-                "motor " + std::to_string(motor) +
-                ": nobody asks for its current (0x9C), without which it has no efforts");
-        }
-        recognition.boards.push_back(std::move(board));
-        for (const std::uint32_t base : {0x140U, 0x240U}) { // requests and answers
-            recognition.identifiers.insert({false, base + static_cast<std::uint32_t>(motor)});
-        }
         for (const auto& [command, count] : commands) {
             recognition.score += 3 * static_cast<double>(count);
         }
@@ -158,13 +172,7 @@ Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
     recognition.fields = {{"driver", old ? "V2" : "V3"},
                           {"position", rmd_position_names.at(static_cast<std::size_t>(position))}};
     if (!recognition.boards.empty()) {
-        recognition.unsure.emplace_back("torques: efforts are currents without newton_metre_per_ampere");
-    }
-    if (position == hal::RmdPosition::encoder) {
-        recognition.unsure.emplace_back("counts_per_turn: 65536 is assumed");
-    }
-    if (position == hal::RmdPosition::status && !old && !recognition.boards.empty()) {
-        recognition.unsure.emplace_back("positions of 1 ° are too coarse to learn from: poll 0x92");
+        add_rmd_doubts(position, old, recognition.unsure);
     }
     return recognition;
 }

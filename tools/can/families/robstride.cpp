@@ -140,18 +140,22 @@ RobstrideAnswers robstride_answers(FrameSpan frames) {
     return answers;
 }
 
-Recognition recognise_private_robstride(FrameSpan frames) {
-    Recognition recognition;
-    recognition.quantity = "tau";
-    const RobstrideAnswers answers = robstride_answers(frames);
-    const auto total = [](const auto& host) {
+/// Returns the host that gets the most answers.
+RobstrideAnswers::const_iterator main_robstride_host(const RobstrideAnswers& answers) {
+    return std::ranges::max_element(answers, {}, [](const auto& host) {
         std::uint64_t sum = 0;
         for (const auto& [motor, count] : host.second) {
             sum += count;
         }
         return sum;
-    };
-    const auto main_host = std::ranges::max_element(answers, {}, total);
+    });
+}
+
+Recognition recognise_private_robstride(FrameSpan frames) {
+    Recognition recognition;
+    recognition.quantity = "tau";
+    const RobstrideAnswers answers = robstride_answers(frames);
+    const auto main_host = main_robstride_host(answers);
     if (main_host == answers.end()) {
         return recognition;
     }

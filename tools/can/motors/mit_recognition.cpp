@@ -71,37 +71,52 @@ void drop_selections(std::vector<MitCandidate>& candidates) {
     });
 }
 
+namespace {
+
+/// Maxima of the types whose velocity_max is near a listed or measured one.
+struct NearTypes {
+    std::vector<std::string> names;
+    std::set<double> velocities, torques;
+    Maxima first{}; ///< zeros: no type is near
+};
+
+/// `velocity`: 0 if nothing is known of it; then the first type is taken.
+NearTypes near_types(std::span<const MotorType> types, double velocity) {
+    constexpr double largest_distance = 0.09; // of filters in the motor; maxima of types differ by 10 %
+    constexpr double as_close = 0.01;
+    const double distance = closest(types, velocity);
+    NearTypes result;
+    for (const MotorType& type : types) {
+        for (const Maxima& maxima : {type.maxima, type.others}) {
+            const bool fits = velocity > 0 && distance < largest_distance &&
+                              std::abs(velocity / maxima[1] - 1) < distance + as_close;
+            if (!fits && !(velocity == 0 && &type == &types.front())) {
+                continue;
+            }
+            result.velocities.insert(maxima[1]);
+            result.torques.insert(maxima[2]);
+            if (result.names.empty() || result.names.back() != type.name) {
+                result.names.emplace_back(type.name);
+            }
+            result.first = result.first[1] == 0 ? maxima : result.first;
+        }
+    }
+    return result;
+}
+
+} // namespace
+
 MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, const MotorSearch& search,
                               const Maxima& known) {
-    const std::span<const MotorType> types = search.types;
     const std::string ask(search.ask);
     MeasuredMaxima result;
     const bool sure = velocity.is_sure();
     const double measured = sure ? std::abs(velocity.ratio()) * assumed : 0;
     const double error = velocity.ratio_error() * assumed;
-    constexpr double largest_distance = 0.09; ///< of filters in the motor; maxima of types differ by 10 %
-    constexpr double as_close = 0.01;
-    const double listed_velocity = known[1] > 0 ? known[1] : measured;
-    const double distance = closest(types, listed_velocity);
-    std::set<double> velocities;
-    std::set<double> torques;
-    std::vector<std::string> names;
-    for (const MotorType& type : types) {
-        for (const Maxima& maxima : {type.maxima, type.others}) {
-            const bool fits = listed_velocity > 0 && distance < largest_distance &&
-                              std::abs(listed_velocity / maxima[1] - 1) < distance + as_close;
-            if (fits || (listed_velocity == 0 && &type == &types.front())) {
-                velocities.insert(maxima[1]);
-                torques.insert(maxima[2]);
-                if (names.empty() || names.back() != type.name) {
-                    names.emplace_back(type.name);
-                }
-                result.maxima = result.maxima[1] == 0 ? maxima : result.maxima;
-            }
-        }
-    }
+    const NearTypes near = near_types(search.types, known[1] > 0 ? known[1] : measured);
+    result.maxima = near.first;
     if (result.maxima[1] == 0) { // no type has it
-        result.maxima = types.front().maxima;
+        result.maxima = search.types.front().maxima;
         result.maxima[1] = std::stod(rounded_text(measured > 0 ? measured : known[1]));
     }
     if (sure) {
@@ -110,11 +125,12 @@ MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, con
     }
     if (known[1] == 0 && !sure) {
         result.unsure = "it hardly moved, so that its type is a guess; " + ask;
-    } else if (velocities.empty()) {
+    } else if (near.velocities.empty()) {
         result.unsure = "no known type has a velocity_max of " + rounded_text(measured) + " rad/s; " + ask;
-    } else if ((known[2] == 0 && torques.size() > 1) || (known[1] == 0 && velocities.size() > 1)) {
-        result.unsure = "it may be a " + listed(names) + ": velocity_max " + numbers_text(velocities) +
-                        " rad/s, torque_max " + numbers_text(torques) + " N·m; " + ask;
+    } else if ((known[2] == 0 && near.torques.size() > 1) || (known[1] == 0 && near.velocities.size() > 1)) {
+        result.unsure = "it may be a " + listed(near.names) + ": velocity_max " +
+                        numbers_text(near.velocities) + " rad/s, torque_max " + numbers_text(near.torques) +
+                        " N·m; " + ask;
     }
     for (std::size_t i = 0; i < known.size(); ++i) {
         result.maxima[i] = known[i] > 0 ? known[i] : result.maxima[i];

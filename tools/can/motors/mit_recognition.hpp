@@ -46,11 +46,10 @@ struct MitCandidate {
 /// their byte 0 is no motor number.
 void drop_selections(std::vector<MitCandidate>& candidates);
 
-/// Groups frames by identifier and motor. `Protocol`: a MitProtocol. `plausible(frame)`: 0 (not such a frame)
-/// to 1.
+/// Returns the frames by identifier and motor, with their plausibility. `Protocol`: a MitProtocol.
+/// `plausible(frame)`: 0 (not such a frame) to 1.
 template <hal::MitProtocol Protocol, class Plausible>
-std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, bool own_id,
-                                         Plausible plausible) {
+std::vector<MitCandidate> mit_groups(FrameSpan frames, Plausible plausible) {
     std::map<std::pair<std::uint32_t, unsigned>, MitCandidate> found;
     std::map<std::uint32_t, std::uint64_t> all;
     for (const hal::Frame& frame : frames) {
@@ -69,10 +68,21 @@ std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, 
             candidate.steady.take(frame);
         }
     }
-    std::vector<MitCandidate> candidates;
+    std::vector<MitCandidate> groups;
     for (auto& [key, candidate] : found) {
         candidate.of_id = all[candidate.feedback_id];
         candidate.plausibility /= static_cast<double>(candidate.frames);
+        groups.push_back(candidate);
+    }
+    return groups;
+}
+
+/// Returns the groups that are steady feedback of a motor, with the codec's fit.
+template <hal::MitProtocol Protocol, class Plausible>
+std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, bool own_id,
+                                         Plausible plausible) {
+    std::vector<MitCandidate> candidates;
+    for (MitCandidate& candidate : mit_groups<Protocol>(frames, plausible)) {
         const bool command = !own_id && candidate.feedback_id == candidate.motor;
         const bool rare = 20 * candidate.frames < candidate.of_id;
         if (candidate.motor == 0 || command || rare || candidate.frames < frames_to_recognise ||

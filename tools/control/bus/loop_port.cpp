@@ -169,12 +169,18 @@ LoopInput LoopPort::sense(std::int64_t now_ns) {
     if (!usable || corrected) {
         return input;
     }
+    take(sample, now_ns, input);
+    input.time_ns = *instant + clock_.correction_ns();
+    return input;
+}
+
+/// Hands the positions that are there, and the torques, to the loop.
+void LoopPort::take(const BusSample& sample, std::int64_t now_ns, LoopInput& input) {
     for (Eigen::Index joint = 0; joint < position_.size(); ++joint) {
         const auto index = static_cast<std::size_t>(joint);
         position_[joint] = sample.report.joint_reason[index] == hal::Reason::ok ? sample.positions()[index]
                                                                                 : position_[joint];
     }
-    input.time_ns = *instant + clock_.correction_ns();
     input.position = &position_;
     input.missing = find_missing(sample, now_ns) ? &missing_ : nullptr;
     sampled_ = true;
@@ -184,7 +190,6 @@ LoopInput LoopPort::sense(std::int64_t now_ns) {
     } else if (!measures_torque_ && command_.size() > 0) {
         input.torque = &command_;
     }
-    return input;
 }
 
 } // namespace dfdyn::tools

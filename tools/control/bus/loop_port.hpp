@@ -116,6 +116,7 @@ class LoopPort {
     void follow_clock(const BusSample& sample, std::int64_t now_ns) noexcept;
     std::optional<std::int64_t> sample_time(std::int64_t due_ns, std::int64_t now_ns) noexcept;
     bool find_missing(const BusSample& sample, std::int64_t now_ns);
+    void take(const BusSample& sample, std::int64_t now_ns, LoopInput& input);
 
     template <hal::Bus B>
     void offer(B& bus, std::span<const hal::Frame> frames) {

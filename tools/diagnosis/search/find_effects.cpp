@@ -81,6 +81,9 @@ class Search {
     void add_nuisance();
     FittedModel fitted_model() const;
     FittedResidual fitted_residual() const;
+    void add(std::vector<Candidate>& found, std::vector<Candidate> more) const;
+    void add_scanned(std::vector<Candidate>& found, const Effect& effect, const EffectScan& scan,
+                     const FittedResidual& residual) const;
     std::vector<CandidateEntry> model_dependent() const;
     void refine();
     void place_nuisance();
@@ -149,42 +152,51 @@ FittedResidual Search::fitted_residual() const {
             weighted_residual(regression_, coefficients)};
 }
 
+/// Adds visible candidates, each once.
+void Search::add(std::vector<Candidate>& found, std::vector<Candidate> more) const {
+    for (Candidate& candidate : more) {
+        if (visible(signals_, candidate) &&
+            std::ranges::find(found, candidate.key(), &Candidate::key) == found.end()) {
+            found.push_back(std::move(candidate));
+        }
+    }
+}
+
+/// Adds what a scan finds in the residual, and sets the prices of its effect.
+void Search::add_scanned(std::vector<Candidate>& found, const Effect& effect, const EffectScan& scan,
+                         const FittedResidual& residual) const {
+    std::vector<Candidate> more = scan.candidates(residual);
+    for (Candidate& candidate : more) {
+        candidate.effect = effect.name;
+    }
+    add(found, std::move(more));
+    std::vector<Candidate*> own;
+    for (Candidate& candidate : found) {
+        if (candidate.effect == effect.name) {
+            own.push_back(&candidate);
+        }
+    }
+    scan.set_prices(own, residual);
+}
+
 /// Returns the candidates that depend on the current model.
 std::vector<CandidateEntry> Search::model_dependent() const {
     std::vector<Candidate> found;
-    const auto add = [&](std::vector<Candidate> more) {
-        for (Candidate& candidate : more) {
-            if (visible(signals_, candidate) &&
-                std::ranges::find(found, candidate.key(), &Candidate::key) == found.end()) {
-                found.push_back(std::move(candidate));
-            }
-        }
-    };
-    add(fitted_candidates(signals_, fitted_model(), options_.effects));
+    add(found, fitted_candidates(signals_, fitted_model(), options_.effects));
     for (std::size_t i = 0; i < result_.chosen.size(); ++i) {
         const Candidate& chosen = result_.candidates[result_.chosen[i].candidate];
         if (chosen.about) {
             const Eigen::Index first = result_.first_column(i);
-            add({relinearized(chosen, chosen.shapes[result_.chosen[i].shape],
+            add(found,
+                {relinearized(chosen, chosen.shapes[result_.chosen[i].shape],
                               result_.fit.coefficients.segment(first, result_.first_column(i + 1) - first))});
         } else if (has_trait(chosen.effect, &Effect::kept_while_chosen)) {
-            add({chosen});
+            add(found, {chosen});
         }
     }
     const FittedResidual residual = fitted_residual();
     for (const auto& [effect, scan] : scans_) {
-        std::vector<Candidate> more = scan->candidates(residual);
-        for (Candidate& candidate : more) {
-            candidate.effect = effect->name;
-        }
-        add(std::move(more));
-        std::vector<Candidate*> own;
-        for (Candidate& candidate : found) {
-            if (candidate.effect == effect->name) {
-                own.push_back(&candidate);
-            }
-        }
-        scan->set_prices(own, residual);
+        add_scanned(found, *effect, *scan, residual);
     }
     std::vector<CandidateEntry> result;
     for (Candidate& candidate : found) {

@@ -160,6 +160,47 @@ void add_rest(std::vector<Unexplained>& unexplained, const std::vector<Unexplain
     }
 }
 
+namespace {
+
+/// Inputs on which an output's rest depends, and the gain of a model of them in each held-out block.
+struct FoundInputs {
+    Unexplained entry;
+    Eigen::VectorXd gains = Eigen::VectorXd::Zero(blocks);
+};
+
+/// Chooses inputs one by one as long as a model of them predicts the held-out blocks better.
+FoundInputs inputs_of_rest(const std::vector<InputFunctions>& candidates, const Eigen::MatrixXd& target,
+                           const Eigen::VectorXd& noise, Eigen::Index output) {
+    FoundInputs found{.entry = {output, 0, {}, {}}};
+    std::vector<const Eigen::MatrixXd*> chosen;
+    for (std::size_t step = 0; step < most_inputs; ++step) {
+        Eigen::VectorXd best = found.gains;
+        const InputFunctions* added = nullptr;
+        for (const InputFunctions& candidate : candidates) {
+            std::vector<const Eigen::MatrixXd*> columns = chosen;
+            for (const Eigen::MatrixXd& column : candidate.rows) {
+                columns.push_back(&column);
+            }
+            const Eigen::VectorXd with = held_out_gains(block_sums(columns, target, noise));
+            if (with.sum() > best.sum() && certain(with - found.gains)) {
+                best = with;
+                added = &candidate;
+            }
+        }
+        if (added == nullptr) {
+            break;
+        }
+        found.gains = best;
+        list_inputs(found.entry, added->inputs);
+        for (const Eigen::MatrixXd& column : added->rows) {
+            chosen.push_back(&column);
+        }
+    }
+    return found;
+}
+
+} // namespace
+
 std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                                           const Eigen::MatrixXd& rest, const Eigen::MatrixXd& noise) {
     const SpectralRows rows(signals.measured);
@@ -170,32 +211,7 @@ std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const
     const std::vector<InputFunctions> candidates = all_functions(signals, rows);
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
         const Eigen::MatrixXd target = rows.analyse(rest.col(output), output);
-        std::vector<const Eigen::MatrixXd*> chosen;
-        Eigen::VectorXd gains = Eigen::VectorXd::Zero(blocks);
-        Unexplained entry{output, 0, {}, {}};
-        for (std::size_t step = 0; step < most_inputs; ++step) {
-            Eigen::VectorXd best = gains;
-            const InputFunctions* added = nullptr;
-            for (const InputFunctions& candidate : candidates) {
-                std::vector<const Eigen::MatrixXd*> columns = chosen;
-                for (const Eigen::MatrixXd& column : candidate.rows) {
-                    columns.push_back(&column);
-                }
-                const Eigen::VectorXd with = held_out_gains(block_sums(columns, target, noise.col(output)));
-                if (with.sum() > best.sum() && certain(with - gains)) {
-                    best = with;
-                    added = &candidate;
-                }
-            }
-            if (added == nullptr) {
-                break;
-            }
-            gains = best;
-            list_inputs(entry, added->inputs);
-            for (const Eigen::MatrixXd& column : added->rows) {
-                chosen.push_back(&column);
-            }
-        }
+        auto [entry, gains] = inputs_of_rest(candidates, target, noise.col(output), output);
         if (entry.depends_on.empty()) {
             continue;
         }
