@@ -23,7 +23,7 @@ bool drawable(double value) { return std::isfinite(value) && value > 0; }
 
 std::string point(std::string_view command, const LogAxis& x, const LogAxis& y, double x_value,
                   double y_value) {
-    return joined({command, number(x.pixel(x_value)), " ", number(y.pixel(y_value))});
+    return fine_point(command, x.pixel(x_value), y.pixel(y_value));
 }
 
 bool drawable_at(const ChartCurve& curve, std::size_t i) {
@@ -75,9 +75,10 @@ std::string curve_svg(const ChartCurve& curve, std::size_t index, const LogAxis&
                       double legend_x) {
     const double legend_y = top + 10 + legend_height * static_cast<double>(index);
     const std::string name = escape_html(curve.name);
+    const std::string marks = joined({"<path class=\"band\" d=\"", band_path(curve, x, y),
+                                      "\"/>\n<path class=\"line\" d=\"", line_path(curve, x, y), "\"/>\n"});
     return joined({"<g class=\"curve ", appearance(index), "\"><title>", name, "</title>\n",
-                   "<path class=\"band\" d=\"", band_path(curve, x, y), "\"/>\n", "<path class=\"line\" d=\"",
-                   line_path(curve, x, y), "\"/>\n",
+                   plotted(x, y, marks),
                    line("line", legend_x, legend_y, legend_x + legend_line - 8, legend_y),
                    text("name", legend_x + legend_line, legend_y + 4, name), "</g>\n"});
 }
@@ -125,8 +126,7 @@ std::string curve_chart(const std::string& title, const std::string& x_label, co
     const LogAxis x = log_axis(drawn_values(curves, true), value_axis_width, right);
     const LogAxis y = log_axis(drawn_values(curves, false), bottom, top);
     const double width = right + 14 + legend_line + width_of_names(curves);
-    std::string svg = opening(title, width, bottom + axis_height) + vertical_grid(x, top, bottom, x_label) +
-                      horizontal_grid(y, value_axis_width, right, y_label);
+    std::string svg = opening(title, width, bottom + axis_height) + axes(x, y, x_label, y_label);
     for (std::size_t i = 0; i < curves.size(); ++i) {
         svg += curve_svg(curves[i], i, x, y, right + 14);
     }

@@ -12,12 +12,26 @@ namespace {
 
 constexpr int colours = 8;
 
+std::string with_decimals(double value, int decimals) {
+    std::array<char, 32> text{};
+    return {
+        text.data(),
+        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals).ptr};
+}
+
 } // namespace
 
-std::string number(double value) {
-    std::array<char, 32> text{};
-    return {text.data(),
-            std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, 1).ptr};
+std::string number(double value) { return with_decimals(value, 1); }
+
+std::string fine_point(std::string_view command, double x, double y) {
+    return joined({command, with_decimals(x, 2), " ", with_decimals(y, 2)});
+}
+
+std::string ends_of(double low, double high) {
+    std::array<char, 64> text{};
+    char* const middle = std::to_chars(text.data(), text.data() + 32, low).ptr;
+    *middle = ' ';
+    return {text.data(), std::to_chars(middle + 1, text.data() + text.size(), high).ptr};
 }
 
 std::string joined(std::initializer_list<std::string_view> parts) {

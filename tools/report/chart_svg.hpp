@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 /// Elements of the charts.
@@ -24,6 +25,9 @@ constexpr double legend_height = 20;
 
 /// Formats with one decimal: a tenth of a pixel.
 std::string number(double value);
+
+/// Formats a point with two decimals, for paths that a page may enlarge.
+std::string fine_point(std::string_view command, double x, double y);
 
 /// Concatenates the parts. (GCC 12 warns falsely about a literal + a string.)
 std::string joined(std::initializer_list<std::string_view> parts);
@@ -77,6 +81,30 @@ std::string horizontal_grid(const Axis& y, double x_left, double x_right, const 
         all += tick.label.empty() ? "" : text("tick y", x_left - 7, at + 4, tick.label);
     }
     return all + y_label((y.low_pixel + y.high_pixel) / 2, label);
+}
+
+/// Returns the ends of an axis, without loss.
+std::string ends_of(double low, double high);
+
+/// Returns the grid, ticks and labels of both axes of a plot, with the ends of the axes for the zoom of a
+/// page.
+template <class Axis>
+std::string axes(const Axis& x, const Axis& y, const std::string& x_label, const std::string& y_label) {
+    return joined({"<g class=\"axes\" data-scale=\"", std::is_same_v<Axis, LogAxis> ? "log" : "linear",
+                   "\" data-x=\"", ends_of(x.low, x.high), "\" data-y=\"", ends_of(y.low, y.high), "\">\n",
+                   vertical_grid(x, y.high_pixel, y.low_pixel, x_label),
+                   horizontal_grid(y, x.low_pixel, x.high_pixel, y_label), "</g>\n"});
+}
+
+/// Returns marks of a plot. Its coordinates are those of the chart until the page shows a part of it.
+template <class Axis>
+std::string plotted(const Axis& x, const Axis& y, std::string_view marks) {
+    const double width = x.high_pixel - x.low_pixel;
+    const double height = y.low_pixel - y.high_pixel;
+    return joined({"<svg class=\"plot\" preserveAspectRatio=\"none\"", attribute("x", x.low_pixel),
+                   attribute("y", y.high_pixel), attribute("width", width), attribute("height", height),
+                   " viewBox=\"", number(x.low_pixel), " ", number(y.high_pixel), " ", number(width), " ",
+                   number(height), "\">\n", marks, "</svg>\n"});
 }
 
 } // namespace dfdyn::tools::svg

@@ -14,8 +14,8 @@ namespace {
 std::string charts_html(const std::vector<PageChart>& charts) {
     std::string html = "<div class=\"charts\">\n";
     for (const PageChart& chart : charts) {
-        html += "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" +
-                escape_html(chart.title) + "\">\n" + chart.svg + "</div>\n";
+        html += "<div><div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" +
+                escape_html(chart.title) + "\">\n" + chart.svg + "</div></div>\n";
     }
     return html + "</div>\n";
 }
@@ -61,6 +61,8 @@ std::string render_figure_page(const FigurePage& page) {
         parts.content += section_html(section);
     }
     parts.content += "\n" + facts_html(page.facts);
+    parts.scripts = "<script>\n" + std::string{assets::figure_page_js} + "</script>\n";
+    parts.script_policy = "; script-src 'unsafe-inline'; img-src data:";
     return page_html(parts);
 }
 

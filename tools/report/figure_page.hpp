@@ -31,7 +31,8 @@ struct FigurePage {
     std::vector<ReportFact> facts;
 };
 
-/// Returns the page as one HTML file without external files, network access or scripts.
+/// Returns the page as one HTML file without external files or network access. Curves can be enlarged, and
+/// every chart saved as a picture.
 std::string render_figure_page(const FigurePage& page);
 
 /// Returns the page as a chapter in Markdown, with its title as a heading of level two. The charts are files

@@ -18,6 +18,7 @@ extern const std::string_view report_charts_js;
 extern const std::string_view report_js;
 extern const std::string_view chart_css;
 extern const std::string_view figure_page_css;
+extern const std::string_view figure_page_js;
 extern const std::string_view uplot_css;
 extern const std::string_view uplot_js;
 extern const std::string_view uplot_licence;

@@ -18,7 +18,7 @@ bool finite(double x, double y) { return std::isfinite(x) && std::isfinite(y); }
 
 std::string at(std::string_view command, const LinearAxis& x, const LinearAxis& y, double x_value,
                double y_value) {
-    return joined({command, number(x.pixel(x_value)), " ", number(y.pixel(y_value))});
+    return fine_point(command, x.pixel(x_value), y.pixel(y_value));
 }
 
 /// Each dot is a line of length zero with round caps.
@@ -32,14 +32,18 @@ std::string dots(const XyPoints& points, const LinearAxis& x, const LinearAxis& 
     return joined({"<path class=\"dots\" d=\"", path, "\"/>\n"});
 }
 
+/// A line of length zero with round caps.
+std::string mean_mark(double x, double y) {
+    return joined({"<path class=\"mean\" d=\"", fine_point("M", x, y), "h0\"/>\n"});
+}
+
 std::string bin_marks(const XyBins& bins, const LinearAxis& x, const LinearAxis& y) {
     std::string marks;
     for (std::size_t i = 0; i < bins.x.size(); ++i) {
         const double centre = x.pixel(bins.x[i]);
         marks += line("spread", centre, y.pixel(bins.mean[i] - bins.deviation[i]), centre,
                       y.pixel(bins.mean[i] + bins.deviation[i]));
-        marks += joined({"<circle", attribute("cx", centre), attribute("cy", y.pixel(bins.mean[i])),
-                         attribute("r", 2.6), "/>\n"});
+        marks += mean_mark(centre, y.pixel(bins.mean[i]));
     }
     return marks;
 }
@@ -94,8 +98,7 @@ std::string layer_svg(const Layer& layer, std::size_t index, double legend_x) {
         layer.is_line ? line("line", legend_x, y, legend_x + legend_line - 8, y)
         : layer.look == "cloud"
             ? joined({"<path class=\"dots\" d=\"M", number(middle), " ", number(y), "h0\"/>\n"})
-            : joined({line("spread", middle, y - 7, middle, y + 7), "<circle", attribute("cx", middle),
-                      attribute("cy", y), attribute("r", 2.6), "/>\n"});
+            : line("spread", middle, y - 7, middle, y + 7) + mean_mark(middle, y);
     return joined({"<g class=\"", layer.look, "\"><title>", name, "</title>\n", layer.marks, sample,
                    text("name", legend_x + legend_line, y + 4, name), "</g>\n"});
 }
@@ -103,17 +106,18 @@ std::string layer_svg(const Layer& layer, std::size_t index, double legend_x) {
 std::vector<Layer> layers_of(const XyChart& chart, const LinearAxis& x, const LinearAxis& y) {
     std::vector<Layer> layers;
     if (!chart.reference.x.empty()) {
-        layers.push_back({chart.reference.name, "reference", path_of(chart.reference, x, y), true});
+        layers.push_back(
+            {chart.reference.name, "reference", plotted(x, y, path_of(chart.reference, x, y)), true});
     }
     if (!chart.points.x.empty()) {
-        layers.push_back({chart.points.name, "cloud", dots(chart.points, x, y)});
+        layers.push_back({chart.points.name, "cloud", plotted(x, y, dots(chart.points, x, y))});
     }
     if (!chart.bins.x.empty()) {
-        layers.push_back({chart.bins.name, "bins", bin_marks(chart.bins, x, y)});
+        layers.push_back({chart.bins.name, "bins", plotted(x, y, bin_marks(chart.bins, x, y))});
     }
     for (std::size_t i = 0; i < chart.lines.size(); ++i) {
-        layers.push_back(
-            {chart.lines[i].name, joined({"curve ", appearance(i)}), path_of(chart.lines[i], x, y), true});
+        layers.push_back({chart.lines[i].name, joined({"curve ", appearance(i)}),
+                          plotted(x, y, path_of(chart.lines[i], x, y)), true});
     }
     return layers;
 }
@@ -127,9 +131,8 @@ std::string xy_chart(const XyChart& chart) {
     const LinearAxis y = linear_axis(all_y(chart), bottom, top);
     const std::vector<Layer> layers = layers_of(chart, x, y);
     const double width = right + 14 + legend_line + width_of_names(layers);
-    std::string drawn = opening(chart.title, width, bottom + axis_height) +
-                        vertical_grid(x, top, bottom, chart.x_label) +
-                        horizontal_grid(y, value_axis_width, right, chart.y_label);
+    std::string drawn =
+        opening(chart.title, width, bottom + axis_height) + axes(x, y, chart.x_label, chart.y_label);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         drawn += layer_svg(layers[i], i, right + 14);
     }

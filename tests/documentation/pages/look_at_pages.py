@@ -50,7 +50,6 @@ def look(chromium, page, width, dark, picture):
     probe = (HERE / "probe.js").read_text()
     text = page.read_text()
     catch = "<script>window.probeErrors = []; addEventListener('error', (one) => probeErrors.push(one.message));</script>"
-    text = re.sub(r"<meta http-equiv=\"Content-Security-Policy\"[^>]*>", "", text)  # of pages without scripts, which would stop the probe
     text = re.sub(r"<head>", "<head>" + catch, text, count=1) + f"<script>{probe}</script>"
     with tempfile.TemporaryDirectory() as scratch:
         copy = pathlib.Path(scratch) / "page.html"

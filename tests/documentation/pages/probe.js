@@ -80,6 +80,55 @@ function stuckCharts() {
   }).map(describe);
 }
 
+/** Returns what a chart shows: the views of its plots, and its ticks. */
+function stateOf(chart) {
+  const views = [...chart.querySelectorAll(".plot")].map((plot) => plot.getAttribute("viewBox").split(" ").map(Number));
+  return { views, ticks: [...chart.querySelectorAll(".tick")].map((tick) => tick.textContent) };
+}
+
+/** Sends a pointer event to a point of a chart's plot; `across` and `down` are shares of it. */
+function point(chart, name, across, down) {
+  const plot = chart.querySelector(".plot");
+  const [x, y, width, height] = ["x", "y", "width", "height"].map((one) => plot[one].baseVal.value);
+  const at = new DOMPoint(x + across * width, y + down * height).matrixTransform(chart.getScreenCTM());
+  chart.dispatchEvent(new PointerEvent(name, { clientX: at.x, clientY: at.y, pointerId: 1, pointerType: "mouse",
+    bubbles: true, cancelable: true }));
+}
+
+/**
+ * Returns the charts of figures that do not show what the mouse selects, with ticks of that part, or do not return, and
+ * those of the first that cannot be saved as a picture.
+ */
+async function stuckFigures() {
+  const stuck = [];
+  const charts = [...document.querySelectorAll(".charts .chart")];
+  for (const chart of charts) {
+    const before = stateOf(chart);
+    if (chart.querySelector(".plot")) {
+      chart.setPointerCapture = () => {}; // no real pointer is down
+      const { x, y, width, height } = chart.querySelector(".plot").viewBox.baseVal;
+      const expected = [x + 0.4 * width, y + 0.5 * height, 0.2 * width, 0.3 * height];
+      point(chart, "pointerdown", 0.4, 0.5);
+      point(chart, "pointermove", 0.5, 0.6);
+      point(chart, "pointerup", 0.6, 0.8);
+      const part = stateOf(chart);
+      const isPart = part.views.every((view) => view.every((value, i) => Math.abs(value - expected[i]) < 0.01 * width));
+      point(chart, "dblclick", 0.5, 0.5);
+      const returns = JSON.stringify(stateOf(chart)) === JSON.stringify(before);
+      if (!isPart || part.ticks.length < 4 || !returns) {
+        stuck.push(`${describe(chart)} shows ${JSON.stringify(part)}, expected ${expected}; returns: ${returns}`);
+      }
+    }
+  }
+  for (const chart of charts.slice(0, 3)) { // each takes a while
+    const png = await png_of(chart);
+    if (!png || png.size < 2000) {
+      stuck.push(`${describe(chart)} is a PNG of ${png && png.size} bytes`);
+    }
+  }
+  return stuck;
+}
+
 /** Returns the tables: the text of all cells, row by row. */
 function tablesOf() {
   return [...document.querySelectorAll("table")].map((table) =>
@@ -91,7 +140,7 @@ function unprinted(texts) {
   return texts.filter((one) => /(^|[^\w])-?(nan|inf|undefined|null)([^\w]|$)/i.test(one.textContent)).map(describe);
 }
 
-function probe() {
+async function probe() {
   const width = document.documentElement.clientWidth;
   const elements = [...document.body.querySelectorAll("*")].filter((one) => !["SCRIPT", "STYLE"].includes(one.tagName));
   const texts = elements.filter(showsText);
@@ -119,7 +168,7 @@ function probe() {
     unreachable: controls.filter((one) => one.tabIndex < 0 && !one.disabled).map(describe)
       .concat(scrollers.filter((one) => one.tabIndex < 0 && !one.querySelector("a, button, input, [tabindex]")).map(describe)),
     background: luminanceOf(backgroundOf(document.body)), foreground: luminanceOf(colourOf(body.color)),
-    stuck: stuckCharts(),
+    stuck: stuckCharts().concat(await stuckFigures()),
     errors: window.probeErrors,
   }), "*");
 }

@@ -54,13 +54,21 @@ TEST_CASE("a chart shows dots and bins and lines at the right places with their 
         CHECK_THAT(svg, ContainsSubstring(std::string(">").append(name).append("</text>")));
     }
     // x and y from -0.3 to 10.3 are at pixels 66 to 586 and 364 to 34.
-    CHECK_THAT(svg, ContainsSubstring("d=\"M80.7 354.7h0M326.0 199.0h0M571.3 43.3h0\""));
-    CHECK_THAT(svg, ContainsSubstring("d=\"M80.7 354.7M571.3 43.3\""));
-    CHECK_THAT(svg, ContainsSubstring("<circle cx=\"178.8\" cy=\"292.4\""));
+    CHECK_THAT(svg, ContainsSubstring("d=\"M80.72 354.66h0M326.00 199.00h0M571.28 43.34h0\""));
+    CHECK_THAT(svg, ContainsSubstring("d=\"M80.72 354.66M571.28 43.34\""));
+    CHECK_THAT(svg, ContainsSubstring("class=\"mean\" d=\"M178.83 292.40h0\""));
     CHECK_THAT(svg,
                ContainsSubstring("class=\"spread\" x1=\"178.8\" y1=\"323.5\" x2=\"178.8\" y2=\"261.3\""));
     CHECK_THAT(svg, ContainsSubstring("class=\"curve c1 dash0\""));
     CHECK(svg.find("nan") == std::string::npos);
+}
+
+TEST_CASE("the marks of a chart are in a plot of their own with the ends of its axes") {
+    XyChart chart{"Title", "x", "y"};
+    chart.lines = {{"line", {0, 10}, {-5, 5}}};
+    const std::string svg = xy_chart(chart);
+    CHECK_THAT(svg, ContainsSubstring("data-scale=\"linear\" data-x=\"-0.3 10.3\" data-y=\"-5.3 5.3\""));
+    CHECK_THAT(svg, ContainsSubstring("viewBox=\"66.0 34.0 520.0 330.0\">\n<path class=\"line\""));
 }
 
 TEST_CASE("texts of a linear chart are escaped and a chart without data is valid") {
