@@ -54,7 +54,7 @@ struct CatalogueEntry {
     bool on_request = false;
 };
 
-constexpr std::array<CatalogueEntry, 25> catalogue{{
+constexpr auto catalogue = std::to_array<CatalogueEntry>({
     {"viscous_friction", Shows::torque, hidden_effects::viscous_friction},
     {"coulomb_friction", Shows::torque, hidden_effects::coulomb_friction},
     {"stribeck_friction", Shows::torque, hidden_effects::stribeck_friction},
@@ -80,7 +80,7 @@ constexpr std::array<CatalogueEntry, 25> catalogue{{
     {"delay", Shows::both, hidden_effects::delay},
     {"friction_drift", Shows::torque, hidden_effects::friction_drift},
     {"external_contact", Shows::both, hidden_effects::external_contact},
-}};
+});
 
 /// The robot with the bodies of all payloads, including those that are attached later.
 Robot with_payloads(Robot robot, const Scenario& scenario) {
