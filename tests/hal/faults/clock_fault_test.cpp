@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time stamps that jump while the clock of the bus continues.
+#include "dfdyn/hal/assembly/sampler.hpp"
+#include "dfdyn/hal/bus_event.hpp"
 #include "tests/hal/support/arm_on_bus.hpp"
 
 namespace hal = dfdyn::hal;
@@ -17,6 +19,64 @@ auto shifted_by(std::int64_t jump_ns) {
         }
     };
 }
+
+/// The arm as a sampler takes it, at a timer's moments.
+struct SampledArm {
+    ArmOnBus::Assembly& assembly;
+
+    std::optional<std::int64_t> take(const hal::Frame& frame, std::int64_t now_ns) {
+        assembly.take(frame, now_ns);
+        return std::nullopt;
+    }
+    void update(hal::BusState state, const hal::BusCounters& counters) { assembly.update(state, counters); }
+    bool pending(std::int64_t instant_ns, std::int64_t now_ns) const {
+        return assembly.pending(instant_ns, now_ns);
+    }
+    auto assemble(std::int64_t instant_ns, std::int64_t now_ns) {
+        return assembly.assemble(instant_ns, now_ns);
+    }
+};
+
+/// Samples an arm by the stamps of its frames, and counts the valid samples.
+class StampedBench {
+  public:
+    explicit StampedBench(std::mt19937_64& engine) : arm_(engine), sampled_{arm_.assembly} {}
+
+    /// Sends the first `count` frames of the next tick with stamps that are off by `by_ns`.
+    void send(std::int64_t by_ns, std::size_t count = 3) {
+        std::vector<hal::Frame> frames = arm_.frames_of(arm_.number++);
+        frames.resize(count);
+        for (hal::Frame& frame : frames) {
+            frame.stamp_ns += by_ns;
+            take(frame);
+        }
+    }
+    void send_bus_off(std::int64_t by_ns) {
+        hal::Frame frame;
+        frame.error = true;
+        frame.id = 0x40;
+        frame.length = 8;
+        frame.stamp_ns = ArmOnBus::time_ns(arm_.number) + by_ns;
+        take(frame);
+    }
+    void be_silent(int ticks) { arm_.number += ticks; }
+
+    int valid = 0; ///< samples
+
+  private:
+    void take(const hal::Frame& frame) {
+        hal::note_frame(frame, state_, counters_);
+        sampler_.take(sampled_, frame, state_, counters_,
+                      [&](const auto& sample, std::int64_t) { valid += sample.valid() ? 1 : 0; });
+    }
+
+    ArmOnBus arm_;
+    SampledArm sampled_;
+    hal::Sampler<SampledArm> sampler_{
+        {.timer = true, .period_ns = ms, .delay_ns = 3 * ms / 2, .patience_ns = 3 * ms}};
+    hal::BusState state_ = hal::BusState::active;
+    hal::BusCounters counters_;
+};
 
 } // namespace
 
@@ -60,4 +120,28 @@ TEST_CASE("fault 22: no second sample is assembled for the same time") {
     const auto again = arm.read(); // the caller's timer expired twice
     CHECK(again.position() == Reason::time_not_increasing);
     CHECK(arm.run(10));
+}
+
+TEST_CASE("faults 22, 25 and 23: samples go on after a bus-off while the clock was set back and forward") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (std::size_t before = 17; before <= 20; ++before) { // frames by the clock that was set back
+        StampedBench bench(engine);
+        for (int tick = 0; tick < 100; ++tick) {
+            bench.send(0);
+        }
+        for (std::size_t left = before; left > 0; left -= std::min<std::size_t>(left, 3)) {
+            bench.send(-342 * ms, std::min<std::size_t>(left, 3));
+        }
+        bench.send_bus_off(-342 * ms);
+        bench.be_silent(360);
+        for (int tick = 0; tick < 300; ++tick) { // twenty times as many readings as usual qualify
+            bench.send(27 * ms);
+        }
+        const int valid_before = bench.valid;
+        for (int tick = 0; tick < 100; ++tick) {
+            bench.send(27 * ms);
+        }
+        CAPTURE(before);
+        CHECK(bench.valid >= valid_before + 99);
+    }
 }

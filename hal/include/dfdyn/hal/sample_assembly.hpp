@@ -63,6 +63,11 @@ class SampleAssembly {
 
     /// Accepts a frame, read at `now_ns`. Returns the instant that it completes, if any.
     constexpr SampleTrigger take(const Frame& frame, std::int64_t now_ns) noexcept {
+        const std::uint64_t clocks = watch_.clock.adopted();
+        const auto stamp_ns = watch_.clock.accept(frame.stamp_ns, now_ns); // every frame shows the clock
+        if (watch_.clock.adopted() != clocks) {
+            position_.clock_set();
+        }
         if (frame.error) {
             return {}; // the bus has counted it and has it in its state
         }
@@ -71,11 +76,6 @@ class SampleAssembly {
             return {};
         }
         watch_.from_host += frame.origin == Origin::this_host ? 1U : 0U;
-        const std::uint64_t clocks = watch_.clock.adopted();
-        const auto stamp_ns = watch_.clock.accept(frame.stamp_ns, now_ns);
-        if (watch_.clock.adopted() != clocks) {
-            position_.clock_set();
-        }
         if (!stamp_ns) {
             return {};
         }

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Readings that the limits of a joint allow, and that are not to be believed all the same.
+#include "dfdyn/hal/gate/motion.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace motion_doubt_test {
+
+using dfdyn::hal::EncoderReading;
+using dfdyn::hal::MotionGate;
+using dfdyn::hal::MotionLimits;
+using dfdyn::hal::Reason;
+
+constexpr std::int64_t period = 2'000'000;
+constexpr std::int64_t us = 1000;
+
+/// A gate, and a joint whose encoder's zero is 1 rad away from 0.
+struct Joint {
+    double step_rad = 1e-5;
+    MotionLimits limits;
+    MotionGate gate{{.limits = limits,
+                     .range = {-3, 3},
+                     .max_age_ns = 3 * period,
+                     .period_ns = period,
+                     .jitter_ns = period / 8,
+                     .qualification = {.readings = 10, .zero_readings = 1000}}};
+
+    [[nodiscard]] EncoderReading reading(std::int64_t stamp_ns, double position_rad) const {
+        const double from_zero_rad = std::round((position_rad - 1) / step_rad) * step_rad;
+        return {.stamp_ns = stamp_ns,
+                .position_rad = from_zero_rad + 1,
+                .step_rad = step_rad,
+                .from_zero_rad = from_zero_rad,
+                .zero = from_zero_rad == 0};
+    }
+    Reason take(int tick, double position_rad) {
+        return gate.take(reading(tick * period, position_rad)).reason;
+    }
+    void glance(int tick, double position_rad) { gate.glance(reading(tick * period, position_rad)); }
+};
+
+TEST_CASE("a coarse encoder that freezes in motion is not trusted while it is frozen") {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr double step_rad = 1.745e-3;
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int run = 0; run < 300; ++run) {
+        Joint joint{.step_rad = step_rad, .limits = {5.4, 17}};
+        const double phase_rad = step_rad * unit(engine);
+        const double speed = (1.46 + 0.1 * unit(engine)) / 500; // rad a tick: five counts in `max_age`
+        int trusted = 0;
+        for (int tick = 0; tick < 350; ++tick) {
+            const auto late_ns = static_cast<std::int64_t>(200'000 * unit(engine));
+            const double position_rad = phase_rad + speed * std::min(tick, 200);
+            const bool ok =
+                joint.gate.take(joint.reading(tick * period + late_ns, position_rad)).reason == Reason::ok;
+            trusted += ok && tick >= 205 ? 1 : 0; // until then it may have stopped
+        }
+        CAPTURE(run);
+        CHECK(trusted == 0);
+    }
+}
+
+TEST_CASE("an encoder that froze while the times of its readings were unknown is not trusted") {
+    Joint joint;
+    for (int tick = 0; tick < 200; ++tick) { // at rest
+        joint.take(tick, 0.3);
+    }
+    REQUIRE(joint.take(200, 0.3) == Reason::ok);
+    for (int tick = 201; tick < 240; ++tick) { // the joint begins to move
+        joint.glance(tick, 0.3 + 1e-3 * (tick - 200));
+    }
+    for (int tick = 240; tick < 300; ++tick) {
+        CHECK(joint.take(tick, 0.34) != Reason::ok);
+    }
+}
+
+TEST_CASE("a reading that follows a late one is refused where two others speak against it") {
+    constexpr double speed = 2; // rad/s
+    const auto at = [](std::int64_t stamp_ns) { return 0.3 + speed * 1e-9 * static_cast<double>(stamp_ns); };
+    Joint joint;
+    std::int64_t stamp_ns = 0;
+    const auto take = [&](std::int64_t at_ns, std::int64_t late_ns) {
+        return joint.gate.take(joint.reading(at_ns, at(at_ns - late_ns))).reason;
+    };
+    for (; stamp_ns < 100 * period; stamp_ns += period) {
+        take(stamp_ns, 0);
+    }
+    REQUIRE(take(stamp_ns + 1500 * us, 1400 * us) == Reason::ok); // the limits allow it
+    CHECK(take(stamp_ns + 2300 * us, 0) == Reason::position_jump);
+    CHECK(take(stamp_ns + 6300 * us, 0) == Reason::position_jump);
+    CHECK(take(stamp_ns + 6450 * us, 2400 * us) == Reason::position_jump);
+}
+
+TEST_CASE("an encoder that returns at its zero with readings of unknown time is lost") {
+    Joint joint;
+    for (int tick = 0; tick < 200; ++tick) {
+        joint.take(tick, 1 - 1e-3 * (tick - 175)); // passes the zero shortly before the silence
+    }
+    for (int tick = 330; tick < 400; ++tick) {
+        joint.glance(tick, 1 - 1e-3 * (tick - 330));
+    }
+    for (int tick = 400; tick < 700; ++tick) {
+        CHECK(joint.take(tick, 1 - 1e-3 * (tick - 330)) == Reason::position_lost);
+    }
+}
+
+TEST_CASE("readings that have jumped far away stay refused until a jump takes that back") {
+    for (const bool back : {false, true}) {
+        CAPTURE(back);
+        Joint joint;
+        const auto truth = [](int tick) { return 0.1 + 2e-5 * tick; };
+        for (int tick = 0; tick < 200; ++tick) {
+            joint.take(tick, truth(tick));
+        }
+        REQUIRE(joint.take(200, truth(200)) == Reason::ok);
+        for (int tick = 201; tick < 320; ++tick) { // the board was switched on, and soon a bit is stuck
+            CHECK(joint.take(tick, 1 + truth(tick) - truth(201) + (tick > 206 ? 0.0124 : 0)) != Reason::ok);
+        }
+        int trusted = 0;
+        for (int tick = 320; tick < 700; ++tick) {
+            const double off_rad = back ? 0 : 1 - truth(201);
+            trusted += joint.take(tick, truth(tick) + off_rad) == Reason::ok ? 1 : 0;
+        }
+        CHECK((trusted > 100) == back);
+    }
+}
+
+} // namespace motion_doubt_test
