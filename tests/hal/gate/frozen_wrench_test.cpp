@@ -31,6 +31,23 @@ TEST_CASE("a frozen sensor with a flipped bit in between is frozen still") {
     CHECK(gate.count() == 1);
 }
 
+TEST_CASE("a frozen sensor with three flipped bits in a row is frozen still") {
+    Gate gate(4);
+    const Gate::Raw stuck{7, -3, 0};
+    for (int reading = 1; reading <= 4; ++reading) {
+        gate.frozen(stuck);
+    }
+    for (std::int32_t bit = 1; bit <= 4; bit *= 2) {
+        CHECK_FALSE(gate.frozen({7, -3, bit}));
+    }
+    CHECK(gate.frozen(stuck));
+    CHECK(gate.count() == 1);
+    for (int reading = 1; reading <= 11; ++reading) { // it is good for a while
+        CHECK_FALSE(gate.frozen({reading, reading, 5}));
+    }
+    CHECK_FALSE(gate.frozen(stuck));
+}
+
 TEST_CASE("a sensor that now and then repeats a reading is not frozen") {
     Gate gate(4);
     for (int reading = 0; reading < 1000; ++reading) {

@@ -42,4 +42,14 @@ TEST_CASE("after a silence three outputs must agree") {
     CHECK_FALSE(gate.jumps({force(513)}, 2 * ms * 513));
 }
 
+TEST_CASE("a jump to an output that repeats itself bit for bit is not believed") {
+    JumpGate<1> gate = ready_gate(500);
+    for (int tick = 500; tick < 520; ++tick) {
+        CHECK(gate.jumps({force(500) + 12}, 2 * ms * tick));
+    }
+    for (int tick = 520; tick < 526; ++tick) { // the sensor is not frozen any more
+        CHECK(gate.jumps({force(tick) + 12}, 2 * ms * tick) == (tick < 522));
+    }
+}
+
 } // namespace jump_test

@@ -113,4 +113,15 @@ TEST_CASE("after a lost SYNC, its answer is not assigned to the SYNC before") {
     CHECK(step.answer(51 * period + 400 * us));
 }
 
+TEST_CASE("two answers between which a SYNC was lost do not show that a device has caught up") {
+    SyncStep step = running(50);
+    step.sync(50 * period);
+    for (int cycle = 51; cycle < 200; ++cycle) { // from here on each answer is that to the SYNC before
+        if (cycle % 10 != 5) {
+            step.sync(cycle * period);
+        }
+        CHECK_FALSE(step.answer(cycle * period + 700 * us));
+    }
+}
+
 } // namespace sync_step_test

@@ -3,6 +3,7 @@
 
 #include "dfdyn/core/strict_math.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,10 +23,16 @@ class FrozenWrenchGate {
         : limit_(limit), longest_ns_((limit - 1) * period_ns - period_ns / 2) {}
 
     /// Whether this reading is the limit-th identical one in a row, or a later one. One or two that differ
-    /// are believed, but do not end the row: they may have flipped bits.
+    /// are believed, but do not end the row: they may have flipped bits. Nor is a sensor believed that shows
+    /// the very values at which it was frozen a few readings ago.
     constexpr bool frozen(const Raw& raw, std::int64_t stamp_ns = 0) noexcept {
         const bool repeats = run_ > 0 && raw == last_;
         others_ = repeats ? 0 : others_ + 1;
+        if (since_frozen_ <= most_since_frozen && raw == frozen_) {
+            since_frozen_ = 0;
+            return true;
+        }
+        since_frozen_ = std::min(since_frozen_ + 1, most_since_frozen + 1);
         if (!repeats && (run_ < 2 || others_ > most_others)) {
             run_ = 1;
             others_ = 0;
@@ -38,7 +45,12 @@ class FrozenWrenchGate {
             run_ = run_ >= limit_ ? limit_ + 1 : lasts ? limit_ : run_ + 1;
             episodes_ += run_ == limit_ ? 1U : 0U;
         }
-        return repeats && run_ >= limit_;
+        const bool frozen = repeats && run_ >= limit_;
+        if (frozen) {
+            frozen_ = raw;
+            since_frozen_ = 0;
+        }
+        return frozen;
     }
 
     /// How often the sensor froze.
@@ -46,6 +58,7 @@ class FrozenWrenchGate {
 
   private:
     static constexpr int most_others = 2;
+    static constexpr int most_since_frozen = 10;
 
     int limit_;
     std::int64_t longest_ns_; ///< that identical readings may last; not positive: endless
@@ -53,6 +66,8 @@ class FrozenWrenchGate {
     int run_ = 0;    ///< identical readings in a row; it stops one beyond the limit
     int others_ = 0; ///< readings since then that differ
     Raw last_{};
+    Raw frozen_{};
+    int since_frozen_ = most_since_frozen + 1; ///< readings since the last with these values
     std::uint64_t episodes_ = 0;
 };
 

@@ -13,7 +13,8 @@ namespace dfdyn::hal {
 /// Detects an output whose prediction error is much larger than usual. The prediction of each channel is the
 /// last output or the line through the last two, whichever has had the smaller errors. The limit is ten times
 /// the usual error, and at least 0.5 % of the largest value so far. A force may change at any rate; so
-/// several such outputs in a row that agree with each other are believed. O(values).
+/// several such outputs in a row that agree with each other are believed; not where they are the very same,
+/// as those of a sensor that freezes. O(values).
 template <int values>
 class JumpGate {
   public:
@@ -66,12 +67,13 @@ class JumpGate {
 
     static constexpr void extend(Line& line, const Values& value, std::int64_t stamp_ns) noexcept {
         const auto span = static_cast<double>(stamp_ns - line.stamp_ns);
+        const bool repeats = line.count > 0 && value == line.last;
         for (std::size_t i = 0; i < value.size() && line.count > 0; ++i) {
             line.slope[i] = (value[i] - line.last[i]) / span;
         }
         line.last = value;
         line.stamp_ns = stamp_ns;
-        line.count = std::min(line.count + 1, enough);
+        line.count = std::min(line.count + (repeats ? 0 : 1), enough);
     }
 
     /// Whether an output may follow a line. Its plausible distances from the line are learned.

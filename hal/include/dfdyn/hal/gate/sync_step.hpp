@@ -46,7 +46,8 @@ class SyncStep {
         }
         ++answers_;
         if (answers_ > 1) {
-            missing_ -= missing_ > 0 ? 1 : 0;
+            const bool catches_up = after_ns <= period_ns_; // later it may answer a SYNC that was lost
+            missing_ -= catches_up && missing_ > 0 ? 1 : 0;
             behind_ = (behind_ || late_ns_ >= 0) && missing_ > 0; // 0: all have come
             late_ns_ = -1;
             return false;
