@@ -40,14 +40,20 @@ class CandidateRun {
         return Step::begins;
     }
 
+    /// Returns true if two readings or more that lead from one to the next speak against this one.
+    [[nodiscard]] constexpr bool disputes(const EncoderReading& reading,
+                                          const RunComparison& comparison) const noexcept {
+        return run_.readings() >= 2 && !comparison.continues(run_, reading);
+    }
+
     /// Forgets the run, but not that runs contradicted each other.
     constexpr void interrupt() noexcept {
         before_ = run_.empty() ? before_ : run_;
         run_ = {};
     }
 
-    /// Notes that the device contradicts itself.
-    constexpr void contradict() noexcept { contradicted_ = true; }
+    /// Notes whether the device contradicts itself.
+    constexpr void contradict(bool contradicts) noexcept { contradicted_ = contradicted_ || contradicts; }
 
     /// Forgets everything: the joint is trusted.
     constexpr void clear() noexcept { *this = {}; }

@@ -57,10 +57,12 @@ class MotionGate : private MotionEvidence {
     /// Takes a reading; stamps must increase.
     constexpr Verdict take(const EncoderReading& reading) noexcept {
         const bool expected = is_expected(reading);
+        look(reading);
         const Verdict verdict = judge(reading);
         EncoderReading unwrapped = reading;
         unwrapped.position_rad = verdict.position_rad;
         if (verdict.reason == Reason::ok) {
+            away_.trust(unwrapped, is_established());
             zero_.forget();
         } else {
             zero_.take(unwrapped, expected);
@@ -70,35 +72,32 @@ class MotionGate : private MotionEvidence {
     }
 
     /// Takes a reading of unknown time. It is not compared, but it shows an encoder that counts from its own
-    /// zero, far from where the joint was.
+    /// zero, far from where the joint was, or after a silence.
     constexpr void glance(EncoderReading reading) noexcept {
         unwrap_near(reading, trusted_.last().position_rad);
         const EncoderReading before = unfit_.value_or(trusted_.last());
-        const std::int64_t since_ns = reading.stamp_ns - before.stamp_ns;
-        const double dt_s = seconds_between(0, std::clamp(since_ns, std::int64_t{0}, config_.max_age_ns)) +
-                            seconds_between(0, config_.period_ns);
-        const bool far =
-            magnitude(reading.position_rad - before.position_rad) > tolerance_.reach(dt_s, reading.step_rad);
-        if (far) {
-            counts_from_zero_ =
-                !trusted_.empty() && begins_at_zero(reading, trusted_.end_line(0, config_.period_ns));
+        candidate_.contradict(contradicts_unfit(reading));
+        const bool returns = away_.silent_until(reading.stamp_ns);
+        look(reading);
+        if (returns || is_far(before, reading)) {
+            counts_from_zero_ = !trusted_.empty() && !stood_at(reading) &&
+                                begins_at_zero(reading, trusted_.end_line(0, config_.period_ns));
         }
         zero_lost_ = zero_lost_ || (counts_from_zero_ && !reading.zero);
+        moved_meanwhile_ = moved_meanwhile_ || moves_from_unfit(reading);
         unfit_ = reading;
     }
 
     /// The readings contradict each other: more of them are needed.
-    constexpr void contradict() noexcept { candidate_.contradict(); }
+    constexpr void contradict() noexcept { candidate_.contradict(true); }
 
     /// The device was not itself when it sent this reading: it must qualify again.
     constexpr void interrupt(const EncoderReading& reading) noexcept {
         restarts_ += !trusted_.empty() && !interrupted_ ? 1U : 0U;
         interrupted_ = true;
         candidate_.interrupt();
-        if (unfit_ && comparison_.near(unfit_->stamp_ns, reading.stamp_ns) &&
-            !tolerance_.reaches(*unfit_, reading)) {
-            candidate_.contradict();
-        }
+        candidate_.contradict(unfit_ && comparison_.near(unfit_->stamp_ns, reading.stamp_ns) &&
+                              !tolerance_.reaches(*unfit_, reading));
         unfit_ = reading;
         zero_.take(reading, is_expected(reading));
     }
@@ -107,6 +106,7 @@ class MotionGate : private MotionEvidence {
     constexpr void forget_time() noexcept {
         time_known_ = trusted_.empty() || disturbed_ || lost();
         established_ = {};
+        away_.forget();
         refused_time_known_ = !lost();
     }
 
@@ -139,6 +139,13 @@ class MotionGate : private MotionEvidence {
     [[nodiscard]] constexpr std::uint64_t beyond() const noexcept { return beyond_; }
 
   private:
+    /// Follows where the readings are.
+    constexpr void look(EncoderReading reading) noexcept {
+        if (!trusted_.empty() && unwrap(reading)) {
+            away_.take(reading);
+        }
+    }
+
     /// Gives the joint up where many readings count from the zero, whatever came in between.
     constexpr void lose_if_counting() noexcept {
         const MotionRun& counted = zero_.counted();
@@ -170,8 +177,8 @@ class MotionGate : private MotionEvidence {
         }
         if (fresh(reading.stamp_ns)) {
             if (leads_from_trusted(reading)) {
+                note(candidate_.disputes(reading, comparison_));
                 candidate_.clear();
-                note(false);
                 return trust(reading);
             }
             const bool frozen = trusted_.repeats(reading, tolerance_);
@@ -196,7 +203,7 @@ class MotionGate : private MotionEvidence {
                                              : recently(refused_.last().stamp_ns, reading.stamp_ns) &&
                                                    comparison_.reaches_after_silence(refused_, reading);
         const bool same = refused_.readings() >= config_.qualification.readings &&
-                          goes_on_without_silence(refused_, reading);
+                          comparison_.goes_on_without_silence(refused_, reading);
         const bool can_be = same || (refused_time_known_ ? reached : has_lost_zero());
         const bool goes_on = can_be && !comparison_.continues(run(), reading);
         if (goes_on) {
@@ -243,6 +250,7 @@ class MotionGate : private MotionEvidence {
         candidate_.clear();
         unfit_.reset();
         counts_from_zero_ = false;
+        moved_meanwhile_ = false;
         end_loss();
         interrupted_ = false;
         disturbed_ = false;
@@ -256,6 +264,7 @@ class MotionGate : private MotionEvidence {
         if (broke_off_at_zero(reading)) {
             return lose(reading);
         }
+        candidate_.contradict(contradicts_unfit(reading));
         const CandidateRun::Step step = candidate_.take(reading, comparison_, tolerance_);
         note(step != CandidateRun::Step::continues);
         if (step == CandidateRun::Step::is_off) {
@@ -270,6 +279,7 @@ class MotionGate : private MotionEvidence {
         if (enough && !trusted_.empty() && !expected_ && restarted_at_zero(run())) {
             return lose(reading);
         }
+        suspected_ = suspected_ || trusted_.repeats(reading, tolerance_);
         if (suspected_ && run().still()) {
             return refuse(reading, repeats ? Reason::position_frozen : reason);
         }
@@ -277,8 +287,9 @@ class MotionGate : private MotionEvidence {
         if (!enough && !stands_at_zero) {
             return refuse(reading, reason);
         }
-        if (!trusted_.empty() && (!comes_from_trusted(run(), expected_) ||
-                                  (has_lost_zero() && goes_on_from_refused(run())) || stays_elsewhere())) {
+        if (!trusted_.empty() &&
+            (!comes_from_trusted(run(), expected_) || (has_lost_zero() && goes_on_from_refused(run())) ||
+             stays_elsewhere() || away_.away())) {
             return lose(reading);
         }
         return run().readings() >= needed_readings() || stands_at_zero ? settle(reading)
@@ -317,8 +328,7 @@ class MotionGate : private MotionEvidence {
         forget_jumps();
     }
     constexpr void count_lost(int readings) noexcept {
-        lost_readings_ =
-            std::min(lost_readings_ + std::min(readings, most_lost_readings()), most_lost_readings());
+        lost_readings_ = std::min(lost_readings_ + readings, most_lost_readings());
     }
 
     /// Returns whether the joint is lost for so long that the limits allow any position, and the run does not
@@ -326,11 +336,6 @@ class MotionGate : private MotionEvidence {
     [[nodiscard]] constexpr bool stays_elsewhere() const noexcept {
         return lost_readings_ == most_lost_readings() && lost_jump_rad_ != 0 &&
                !reverses_jump(lost_jump_rad_);
-    }
-
-    /// Number of refused readings after which a position within the limits is no evidence.
-    [[nodiscard]] constexpr int most_lost_readings() const noexcept {
-        return 50 * config_.qualification.readings;
     }
 
     int lost_readings_ = 0;    ///< that continue the refused run

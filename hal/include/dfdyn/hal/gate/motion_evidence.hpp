@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/gate/away_watch.hpp"
 #include "dfdyn/hal/gate/candidate_run.hpp"
 #include "dfdyn/hal/gate/range.hpp"
 #include "dfdyn/hal/gate/startup.hpp"
@@ -34,7 +35,8 @@ class MotionEvidence {
     explicit constexpr MotionEvidence(const Config& config) noexcept
         : config_(config), tolerance_{config.limits, config.period_ns, seconds_between(0, config.jitter_ns)},
           comparison_(tolerance_, config.max_age_ns, config.jitter_ns),
-          zero_(tolerance_, config.max_age_ns + 2 * config.jitter_ns) {}
+          zero_(tolerance_, config.max_age_ns + 2 * config.jitter_ns),
+          away_(tolerance_, config.max_age_ns + 2 * config.jitter_ns) {}
 
     static constexpr int times_when_lost = 20; ///< as many readings are needed after a contradiction
     static constexpr std::int64_t longest_trial_ns = 400'000'000; ///< until trusted readings are established
@@ -148,8 +150,27 @@ class MotionEvidence {
     /// Returns whether a run that begins with this reading may be of a frozen encoder.
     [[nodiscard]] constexpr bool may_be_frozen(const EncoderReading& first) const noexcept {
         const bool recent = comparison_.near(trusted_.last().stamp_ns, first.stamp_ns);
-        return !trusted_.empty() && (recent || trusted_.moves(tolerance_)) &&
+        return !trusted_.empty() && (recent || moved_meanwhile_ || trusted_.moves(tolerance_)) &&
                (!stood_at(first) || trusted_.repeats(first, tolerance_));
+    }
+
+    /// Returns whether no motion leads to this reading from the last one of unknown time, shortly before.
+    [[nodiscard]] constexpr bool contradicts_unfit(const EncoderReading& reading) const noexcept {
+        return unfit_ && comparison_.near(unfit_->stamp_ns, reading.stamp_ns) && is_far(*unfit_, reading);
+    }
+
+    /// Returns whether a joint cannot move from one reading to the other, whose time is known to a period.
+    [[nodiscard]] constexpr bool is_far(const EncoderReading& from, const EncoderReading& to) const noexcept {
+        const std::int64_t since_ns =
+            std::clamp(to.stamp_ns - from.stamp_ns, std::int64_t{0}, config_.max_age_ns);
+        return magnitude(to.position_rad - from.position_rad) >
+               tolerance_.reach(seconds_between(0, since_ns + config_.period_ns), to.step_rad);
+    }
+
+    /// Returns whether this reading of unknown time shows motion since the last one.
+    [[nodiscard]] constexpr bool moves_from_unfit(const EncoderReading& reading) const noexcept {
+        return unfit_ && comparison_.near(unfit_->stamp_ns, reading.stamp_ns) &&
+               magnitude(reading.position_rad - unfit_->position_rad) > 2 * reading.step_rad;
     }
 
     /// Returns whether the joint was at rest at the last trusted reading, and is still there.
@@ -175,6 +196,11 @@ class MotionEvidence {
     /// How many readings are needed after a contradiction.
     [[nodiscard]] constexpr int most_readings() const noexcept {
         return times_when_lost * config_.qualification.readings;
+    }
+
+    /// Number of refused readings after which a position within the limits is no evidence.
+    [[nodiscard]] constexpr int most_lost_readings() const noexcept {
+        return 50 * config_.qualification.readings;
     }
 
     /// Returns true if the run goes on from the trusted readings, and is not of a restarted encoder.
@@ -270,30 +296,10 @@ class MotionEvidence {
         return small_jump || connects(refused_, run);
     }
 
-    /// Returns whether the motion of the joint leads to this reading within the time in which frames are left
-    /// out while the clock is set.
-    [[nodiscard]] constexpr bool comes_while_clock_is_set(const EncoderReading& to) const noexcept {
-        const MotionLine line = trusted_.end_line(0, config_.period_ns);
-        const double way = line.velocity * clock_s;
-        const double off = to.position_rad - line.end_rad;
-        const double error = tolerance_.error(line, clock_s, to.step_rad);
-        return line.span_s > 0 && off >= std::min(way, 0.0) - error && off <= std::max(way, 0.0) + error;
-    }
-
-    /// Returns whether a reading goes on from these as if no time had passed: a clock that is set forward
-    /// looks like a silence.
-    [[nodiscard]] constexpr bool goes_on_without_silence(const MotionRun& before,
-                                                         const EncoderReading& to) const noexcept {
-        const MotionLine line = before.end_line(0, config_.period_ns);
-        const double period_s = seconds_between(0, config_.period_ns);
-        const double off = to.position_rad - line.end_rad - line.velocity * period_s;
-        return line.span_s > 0 && magnitude(off) <= tolerance_.error(line, 2 * period_s, to.step_rad);
-    }
-
     /// Returns whether a run begins where an encoder does that was switched on.
     [[nodiscard]] constexpr bool begins_at_zero(const EncoderReading& first,
                                                 const MotionLine& begin) const noexcept {
-        const bool hidden = !time_known_ && !comes_while_clock_is_set(first);
+        const bool hidden = !time_known_ && !comparison_.comes_within(trusted_, first, clock_s);
         return zero_.explains(first, begin, trusted_.end_line(0, config_.period_ns).velocity,
                               hidden ? clock_s : 0);
     }
@@ -313,6 +319,7 @@ class MotionEvidence {
     MotionTolerance tolerance_;           ///< of readings
     RunComparison comparison_;            ///< of runs
     ZeroWatch zero_;                      ///< readings that count from the zero
+    AwayWatch away_;                      ///< readings that jumped away from the joint
     MotionRun trusted_;                   ///< the positions of the joint
     MotionRun established_;               ///< trusted before them, and for longer
     std::int64_t trial_end_ns_ = 0;       ///< from here on `trusted_` counts alone
@@ -323,6 +330,7 @@ class MotionEvidence {
     double jump_error_rad_ = 0;           ///< largest error of `jump_rad_`
     std::optional<EncoderReading> unfit_; ///< the last reading of a device that was not itself
     bool counts_from_zero_ = false;       ///< readings of unknown time began at the zero, far from the joint
+    bool moved_meanwhile_ = false;        ///< readings of unknown time differed from each other
     CandidateRun candidate_;              ///< of readings that qualify
     MotionRun refused_;                   ///< does not connect; while its readings go on they are refused
     bool expected_ = false;               ///< a run that was seen shortly before led to the begin of the run

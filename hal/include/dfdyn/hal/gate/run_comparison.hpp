@@ -41,6 +41,26 @@ class RunComparison {
         return reached;
     }
 
+    /// Returns true if the motion of the run leads to this reading within the time `most_s`.
+    [[nodiscard]] constexpr bool comes_within(const MotionRun& before, const EncoderReading& to,
+                                              double most_s) const noexcept {
+        const MotionLine line = before.end_line(0, tolerance_.period_ns);
+        const double way = line.velocity * most_s;
+        const double off = to.position_rad - line.end_rad;
+        const double error = tolerance_.error(line, most_s, to.step_rad);
+        return line.span_s > 0 && off >= std::min(way, 0.0) - error && off <= std::max(way, 0.0) + error;
+    }
+
+    /// Returns true if a reading goes on from the run as if no time had passed: a clock that is set forward
+    /// looks like a silence.
+    [[nodiscard]] constexpr bool goes_on_without_silence(const MotionRun& before,
+                                                         const EncoderReading& to) const noexcept {
+        const MotionLine line = before.end_line(0, tolerance_.period_ns);
+        const double period_s = seconds_between(0, tolerance_.period_ns);
+        const double off = to.position_rad - line.end_rad - line.velocity * period_s;
+        return line.span_s > 0 && magnitude(off) <= tolerance_.error(line, 2 * period_s, to.step_rad);
+    }
+
     /// Returns true if the motions before and after a jump meet in between. Either may have one reading that
     /// is off. `longest_s`: a longer time between them allows no larger distance. `share(line)`: the part of
     /// the limits that is allowed for a run that begins with this line.
