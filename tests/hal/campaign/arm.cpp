@@ -2,11 +2,20 @@
 #include "tests/hal/campaign/arm.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace dfdyn::tests {
 
 bool any(const Bits& bits) {
     return std::ranges::any_of(bits, [](std::uint8_t byte) { return byte != 0; });
+}
+
+int count(const Bits& bits) {
+    int sum = 0;
+    for (const std::uint8_t byte : bits) {
+        sum += std::popcount(byte);
+    }
+    return sum;
 }
 
 void copy_bits(const hal::Frame& from, const Bits& bits, hal::Frame& to) {

@@ -54,7 +54,8 @@ struct CampaignArm {
     std::function<wire::Frames(std::size_t board, const wire::Joints&)> frames;
     std::function<wire::Frames(const wire::SixWords&)> wrench;
     std::function<void(hal::Frame&, std::size_t half)> saturate_wrench;
-    std::vector<hal::Frame> status; ///< sent at the start and every 100 ms
+    std::function<bool(const hal::Frame&)> has_values; ///< whether a device of the arm may send it
+    std::vector<hal::Frame> status;                    ///< sent at the start and every 100 ms
     std::function<std::unique_ptr<ReceivingArm>(Trigger, const hal::MotionLimits&)> receive;
 
     /// Where a frame of a board has the position and the effort of each joint; none: it has not.
@@ -77,6 +78,7 @@ struct CampaignArm {
 };
 
 [[nodiscard]] bool any(const Bits& bits);
+[[nodiscard]] int count(const Bits& bits);
 
 /// Copies the bits that are 1 in `bits`.
 void copy_bits(const hal::Frame& from, const Bits& bits, hal::Frame& to);

@@ -156,6 +156,14 @@ CampaignArm arm_with_output(const std::string& name, const Output& output) {
                                 output);
         return std::make_unique<ReceivingAssembly<Assembly>>(trigger, assembly);
     };
+    arm.has_values = [boards, output](const hal::Frame& frame) {
+        const auto carried = [](const hal::Decoded& decoded) {
+            return decoded.kind == hal::Decoded::Kind::values || decoded.kind == hal::Decoded::Kind::part;
+        };
+        Output receiver = output;
+        return carried(receiver.take(frame)) ||
+               std::ranges::any_of(boards, [&](Board board) { return carried(board.decode(frame)); });
+    };
     find_scales(boards, arm);
     if constexpr (requires { Family::on_wire::step_rad; }) {
         arm.step_rad.fill(Family::on_wire::step_rad);

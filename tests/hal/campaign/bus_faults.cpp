@@ -188,10 +188,10 @@ void malform(FaultSite& site) {
             return;
         }
         sent.role = Role::noise; // for faults that are put on top
+        const hal::Frame sound = sent.frame;
         switch (site.pick(4)) {
         case 0:
             sent.frame.length = static_cast<std::uint8_t>((sent.frame.length + 1 + site.pick(7)) % 9);
-            sent.frame.length = sent.frame.length == 7 ? 5 : sent.frame.length; // 7: a saturated sensor
             break;
         case 1:
             sent.frame.remote = true;
@@ -203,6 +203,10 @@ void malform(FaultSite& site) {
             sent.frame.extended = !sent.frame.extended;
             sent.frame.id &= 0x7FFU;
             break;
+        }
+        if (site.arm.has_values(sent.frame)) { // some devices have frames of several forms
+            sent.frame = sound;
+            sent.frame.remote = true;
         }
     });
 }

@@ -25,11 +25,7 @@ void fight_all(std::uint64_t frames, double most_wrong, double most_refused) {
 
 } // namespace
 
-// A restarted joint that is taken for a sound one may be wrong for a whole run; none is wanted
-// (docs/reference/faults.md).
-TEST_CASE("all faults mixed at random make at most 2.5 of a thousand accepted values wrong") {
-    fight_all(200'000, 0.0025, 0.08);
-}
+TEST_CASE("all faults mixed at random make no accepted value wrong") { fight_all(200'000, 0, 0.08); }
 
 TEST_CASE("the legend and the campaign have the same faults") {
     std::ifstream legend(DFDYN_TEST_DATA_DIR "/../../docs/reference/faults.md");
@@ -52,8 +48,9 @@ TEST_CASE("the legend and the campaign have the same faults") {
     CHECK(found == campaign_faults().size());
 }
 
-// Passes with seeds 711, 712 and 714, which chose no rule; with 713, too: 1087 of 1.38 million are wrong.
-TEST_CASE("all faults mixed over five million frames make at most one of a thousand accepted values wrong",
+// docs/reference/faults.md has the figures of eight seeds: none to three of 1.4 million are wrong.
+TEST_CASE("all faults mixed over five million frames make at most one of a hundred thousand accepted values "
+          "wrong",
           "[.long]") {
-    fight_all(5'000'000, 0.001, 0.02);
+    fight_all(5'000'000, 1e-5, 0.02);
 }

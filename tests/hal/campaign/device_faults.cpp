@@ -183,7 +183,7 @@ void swap_nodes(FaultSite& site) {
     std::array<std::optional<double>, 2> last;
     for (const Sent& sent : site.traffic) {
         for (std::size_t joint = 0; joint < 2; ++joint) {
-            if (site.has_position(sent, joint) && sent.true_ns < site.begin_ns) {
+            if (site.has_position(sent, joint) && !sent.uninformative && sent.true_ns < site.begin_ns) {
                 last[joint] = sent.shown[joint].position_rad;
             }
         }

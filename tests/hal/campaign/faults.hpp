@@ -35,6 +35,13 @@ struct FaultSite {
     [[nodiscard]] bool has_position(const Sent& sent, std::size_t joint) const {
         return sent.role == Sent::Role::joints && any(fields(sent).position[joint]);
     }
+    /// Whether a receiver takes the joint's position from it. Other frames may have it, too, in fewer bits.
+    [[nodiscard]] bool is_reading(const Sent& sent, std::size_t joint) const {
+        return has_position(sent, joint) &&
+               std::ranges::none_of(arm.fields[sent.unit], [&](const CampaignArm::Fields& part) {
+                   return count(part.position[joint]) > count(fields(sent).position[joint]);
+               });
+    }
     [[nodiscard]] bool has_effort(const Sent& sent, std::size_t joint) const {
         return sent.role == Sent::Role::joints && any(fields(sent).effort[joint]);
     }

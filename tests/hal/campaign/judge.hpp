@@ -54,14 +54,14 @@ class Judge {
         if (is_near(truth, claim, 0, 0, tolerance)) {
             return Match::right;
         }
-        const double off = std::abs(claim.value - truth(claim.time_s)) - tolerance;
-        const double within = within_limits(joint, claim);
-        const double waited_s = sum(true_ns, [](const Fault& fault) { return fault.waits_s; });
-        const double silence =
-            std::max(after_silence(joint, true_ns), after_silence(joint, true_ns - bus_max_age));
-        const bool waited =
-            waited_s > 0 && !arm_.synchronous && is_near(truth, claim, waited_s, 0, tolerance + within);
-        return off <= within || waited || off <= silence ? Match::undecidable : Match::wrong;
+        if (after_silence(joint, true_ns) || after_silence(joint, true_ns - bus_max_age)) {
+            return Match::undecidable;
+        }
+        const double waits_s = sum(true_ns, [](const Fault& fault) { return fault.waits_s; });
+        const double waited_s = arm_.synchronous ? 0 : waits_s;
+        return is_near(truth, claim, waited_s, 0, tolerance + within_limits(joint, claim))
+                   ? Match::undecidable
+                   : Match::wrong;
     }
 
     /// How far a position is off, and how far it may be where no receiver can tell it.
@@ -137,39 +137,39 @@ class Judge {
     /// since the last right one, at least a period and at most `max_age`.
     [[nodiscard]] double within_limits(std::size_t joint, const Claim& claim) const {
         const auto time_ns = static_cast<std::int64_t>(1e9 * claim.time_s);
-        const std::int64_t blind_ns = sight_[joint].blind_at(time_ns);
-        return blind_ns == 0 ? 0
-                             : reach_rad(joint, truth_.velocity(joint, claim.time_s),
-                                         std::clamp(blind_ns, bus_period, bus_max_age));
+        const JointSight::Blind blind = sight_[joint].blind_at(time_ns);
+        return blind.blind_ns == 0
+                   ? 0
+                   : reach_rad(joint, truth_.velocity(joint, claim.time_s),
+                               std::clamp(blind.blind_ns, bus_period, bus_max_age), blind.span_ns);
     }
 
-    /// How far a run of readings may be off that begins after more than `max_age` without a right one: as
-    /// far as the limits allow for that time. Nothing where it begins at the device's zero.
-    [[nodiscard]] double after_silence(std::size_t joint, std::int64_t true_ns) const {
+    /// Whether a position is of a run that begins after more than `max_age` without a right reading, where
+    /// the limits allow the joint to be by then, and not at the device's zero. Such a run goes on as a joint
+    /// does that went there meanwhile, however far off it is later.
+    [[nodiscard]] bool after_silence(std::size_t joint, std::int64_t true_ns) const {
         const JointSight::Run& run = sight_[joint].run_at(true_ns);
-        const double at_zero =
-            1.5 * std::abs(run.velocity) * seconds_of(bus_period) + 3 * arm_.step_rad[joint];
-        const double reach = reach_rad(joint, run.velocity, run.blind_ns);
-        const bool decidable = run.blind_ns <= bus_max_age || std::abs(run.from_zero_rad) <= at_zero ||
-                               std::abs(run.error_rad) > reach;
-        return decidable ? 0 : reach;
+        const double reach = reach_rad(joint, run.velocity, run.blind_ns, 3 * bus_period);
+        return run.blind_ns > bus_max_age && !run.at_zero && std::abs(run.error_rad) <= reach;
     }
 
     /// Whether an effort comes in frames with a position that is undecidable.
     [[nodiscard]] bool of_undecidable_joint(std::size_t joint, const Claim& claim,
                                             std::int64_t true_ns) const {
-        return within_limits(joint, claim) > 0 || after_silence(joint, true_ns) > 0;
+        return within_limits(joint, claim) > 0 || after_silence(joint, true_ns);
     }
 
     /// How far the limits allow a joint to be from where it is: what it can do for so long after its last
-    /// right readings, which show its velocity over three periods only so well.
-    [[nodiscard]] double reach_rad(std::size_t joint, double velocity, std::int64_t blind_ns) const {
+    /// right readings, which show its velocity over `span_ns` only so well.
+    [[nodiscard]] double reach_rad(std::size_t joint, double velocity, std::int64_t blind_ns,
+                                   std::int64_t span_ns) const {
         const double jitter_s = seconds_of(bus_track_jitter);
         const double age_s = seconds_of(blind_ns) + 2 * jitter_s;
-        const double span_s = 3 * seconds_of(bus_period);
+        const double span_s = seconds_of(span_ns);
         const double fastest = std::abs(velocity) + limits_.acceleration * (age_s + span_s);
         const double reading = arm_.step_rad[joint] + fastest * jitter_s;
-        const double speed = 2 * reading / span_s + 0.5 * limits_.acceleration * span_s;
+        const double speed =
+            span_ns > 0 ? 2 * reading / span_s + 0.5 * limits_.acceleration * span_s : limits_.velocity;
         return reading + speed * age_s + 0.5 * limits_.acceleration * age_s * age_s;
     }
 

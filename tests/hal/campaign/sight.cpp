@@ -11,6 +11,7 @@ constexpr int many = 20; ///< readings
 constexpr std::int64_t set_back_ns = 5'000'000;
 constexpr int frames_until_adopted = 20; ///< of a clock that was set back
 constexpr std::int64_t stray_ns = 5'000'000;
+constexpr std::int64_t unlimited_ns = 1'000'000'000'000;
 
 /// More than a frame that comes late by as much as a period is off.
 double jump_rad(double velocity) { return 1e-3 + 3e-3 * std::abs(velocity); }
@@ -25,15 +26,20 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
     int left_out = 0;
     std::int64_t clock_ns = 0;
     for (const Sent& sent : site.traffic) {
-        left_out = sent.clock_ns < clock_ns - set_back_ns ? frames_until_adopted : std::max(0, left_out - 1);
+        const bool set_back = sent.clock_ns < clock_ns - set_back_ns;
+        set_back_ = set_back_ || set_back;
+        left_out = set_back ? frames_until_adopted : std::max(0, left_out - 1);
+        if (sent.clock_ns != clock_ns) {
+            known_ns_.clear(); // by the stamps the joint had another velocity
+        }
         clock_ns = sent.clock_ns;
         const std::int64_t time_ns = sent.frame.stamp_ns - sent.clock_ns;
         const bool stray = std::abs(time_ns - sent.true_ns) > stray_ns;
-        if (left_out > 0 || stray || !site.has_position(sent, joint)) {
+        if (left_out > 0 || stray || !site.is_reading(sent, joint)) {
             continue;
         }
         if (sent.corrupted) {
-            blind_.push_back({time_ns, std::max<std::int64_t>(1, time_ns - last_.time_ns)});
+            blind_.push_back({time_ns, std::max<std::int64_t>(1, time_ns - last_.time_ns), span_ns()});
             continue;
         }
         const double t = seconds_of(time_ns);
@@ -41,18 +47,32 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
         const double shown = sent.shown[joint].position_rad;
         const double error = shown - site.truth.position(joint, t);
         const double late_s = site.arm.synchronous ? 0.6e-3 : seconds_of(bus_jitter);
+        const double from_zero = shown - site.arm.zero_rad[joint];
+        const double step = site.arm.step_rad[joint];
+        const Reading reading{.true_ns = sent.true_ns,
+                              .stamp_ns = sent.frame.stamp_ns,
+                              .time_ns = time_ns,
+                              .shown_rad = shown,
+                              .error_rad = error,
+                              .right = !sent.uninformative &&
+                                       is_between(shown, site.truth.position(joint, t - late_s),
+                                                  site.truth.position(joint, t), 1e-7)};
+        const double motion = 1.5 * std::abs(velocity) * seconds_of(bus_period) + 3 * step;
         take({.begin_ns = sent.true_ns,
               .error_rad = error,
-              .from_zero_rad = shown - site.arm.zero_rad[joint],
+              .from_zero_rad = from_zero,
+              .at_zero = std::abs(from_zero) <= motion && !can_move_to(reading, step),
               .velocity = velocity},
-             {.true_ns = sent.true_ns,
-              .stamp_ns = sent.frame.stamp_ns,
-              .time_ns = time_ns,
-              .error_rad = error,
-              .right = !sent.uninformative && is_between(shown, site.truth.position(joint, t - late_s),
-                                                         site.truth.position(joint, t), 1e-7)});
+             reading);
     }
     std::ranges::stable_sort(blind_, {}, &Blind::time_ns);
+}
+
+bool JointSight::can_move_to(const Reading& reading, double step_rad) const {
+    const std::int64_t apart_ns = reading.time_ns - last_.time_ns;
+    return last_.true_ns != 0 && apart_ns <= bus_max_age &&
+           std::abs(reading.shown_rad - last_.shown_rad) <=
+               Truth::most_velocity * seconds_of(apart_ns + bus_jitter) + 2 * step_rad;
 }
 
 void JointSight::begin_run(Run seen, const Reading& reading) {
@@ -65,8 +85,9 @@ void JointSight::begin_run(Run seen, const Reading& reading) {
         return;
     }
     const Reading& before = last_established_;
-    seen.blind_ns = before.true_ns == 0
-                        ? 0
+    seen.blind_ns = before.true_ns == 0 ? 0
+                    : set_back_
+                        ? unlimited_ns
                         : std::max(reading.true_ns - before.true_ns, reading.stamp_ns - before.stamp_ns);
     runs_.push_back(seen);
 }
@@ -88,12 +109,21 @@ void JointSight::take(Run seen, const Reading& reading) {
         wrong_rad_ = reading.error_rad;
     }
     const std::int64_t needed_ns = std::min(run.blind_ns, longest_trial_ns);
-    if (reading.right && reading.true_ns - run.begin_ns >= needed_ns) {
+    right_ = reading.right ? right_ + 1 : 0;
+    if (right_ >= 2 && reading.true_ns - run.begin_ns >= needed_ns) {
         last_established_ = reading;
+        set_back_ = false;
+        wrong_ = {};
     }
     const std::int64_t right_ns = last_established_.time_ns;
-    blind_.push_back(
-        {reading.time_ns, reading.right ? 0 : std::max<std::int64_t>(1, reading.time_ns - right_ns)});
+    blind_.push_back({reading.time_ns,
+                      reading.right ? 0 : std::max<std::int64_t>(1, reading.time_ns - right_ns), span_ns()});
+    if (reading.right) {
+        known_ns_.push_back(reading.time_ns);
+    }
+    if (known_ns_.size() > 4) {
+        known_ns_.pop_front();
+    }
 }
 
 const JointSight::Run& JointSight::run_at(std::int64_t true_ns) const {
@@ -101,13 +131,17 @@ const JointSight::Run& JointSight::run_at(std::int64_t true_ns) const {
     return later == runs_.begin() ? runs_.front() : *(later - 1);
 }
 
-std::int64_t JointSight::blind_at(std::int64_t time_ns) const {
-    std::int64_t longest_ns = 0;
+std::int64_t JointSight::span_ns() const {
+    return known_ns_.size() < 2 ? 0 : std::max<std::int64_t>(0, known_ns_.back() - known_ns_.front());
+}
+
+JointSight::Blind JointSight::blind_at(std::int64_t time_ns) const {
+    Blind longest{};
     for (auto at = std::ranges::lower_bound(blind_, time_ns - bus_max_age, {}, &Blind::time_ns);
          at != blind_.end() && at->time_ns <= time_ns + bus_max_age; ++at) {
-        longest_ns = std::max(longest_ns, at->blind_ns);
+        longest = at->blind_ns > longest.blind_ns ? *at : longest;
     }
-    return longest_ns;
+    return longest;
 }
 
 } // namespace dfdyn::tests

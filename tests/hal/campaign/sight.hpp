@@ -3,6 +3,7 @@
 
 #include "tests/hal/campaign/faults.hpp"
 
+#include <deque>
 #include <vector>
 
 namespace dfdyn::tests {
@@ -13,16 +14,27 @@ namespace dfdyn::tests {
 ///
 /// The readings form runs. A run begins after a silence, or where the error of what the device shows jumps.
 /// Where the error is that of an earlier run of many readings, that run goes on. After a silence or a jump,
-/// right readings end the time without a right reading only after as long again, at most 0.42 s.
+/// right readings end the time without a right reading only after as long again, at most 0.42 s. Nor does a
+/// single right reading end it: it and the wrong one before it contradict each other, and either may be
+/// right.
 class JointSight {
   public:
     struct Run {
         std::int64_t begin_ns = 0; ///< true time
-        std::int64_t blind_ns = 0; ///< from the last right reading to the begin, by whichever clock is longer
-        double error_rad = 0;      ///< of what the device shows at the begin
-        double from_zero_rad = 0;  ///< of what it shows there
-        double velocity = 0;       ///< of the joint there
+        /// From the last right reading to the begin, by whichever clock is longer; unlimited where the clock
+        /// was set back, after which nobody knows it.
+        std::int64_t blind_ns = 0;
+        double error_rad = 0;     ///< of what the device shows at the begin
+        double from_zero_rad = 0; ///< of what it shows there
+        bool at_zero = false;     ///< it jumps there, within a period and a half's motion of its zero
+        double velocity = 0;      ///< of the joint there
         int readings = 0;
+    };
+
+    /// A reading with the time since the last right one (0: it is right), and the time that the four right
+    /// ones before it span (0: nothing shows the velocity).
+    struct Blind {
+        std::int64_t time_ns, blind_ns, span_ns;
     };
 
     JointSight(const FaultSite& site, std::size_t joint);
@@ -30,29 +42,30 @@ class JointSight {
     /// The run that an instant belongs to.
     [[nodiscard]] const Run& run_at(std::int64_t true_ns) const;
 
-    /// How long before the wrong readings around an instant the last right one came, at most; 0: all that an
-    /// interpolation may use are right.
-    [[nodiscard]] std::int64_t blind_at(std::int64_t time_ns) const;
+    /// The one of the readings around an instant, which an interpolation may use, for which the last right
+    /// one came the longest time before.
+    [[nodiscard]] Blind blind_at(std::int64_t time_ns) const;
 
   private:
     struct Reading {
         std::int64_t true_ns, stamp_ns; ///< when it came, and its stamp
         std::int64_t time_ns;           ///< its stamp by the true clock
-        double error_rad;
+        double shown_rad, error_rad;
         bool right;
     };
-    /// A reading with the time since the last right one; 0: it is right.
-    struct Blind {
-        std::int64_t time_ns, blind_ns;
-    };
-
+    /// Whether the joint can have moved there from the reading before: then it only passes its zero.
+    [[nodiscard]] bool can_move_to(const Reading& reading, double step_rad) const;
     void take(Run seen, const Reading& reading);
     void begin_run(Run seen, const Reading& reading);
+    [[nodiscard]] std::int64_t span_ns() const;
 
     std::vector<Run> runs_{Run{}};
     std::vector<Blind> blind_; ///< by time
     Reading last_{}, last_established_{};
-    Run wrong_{}; ///< the last wrong run of many readings
+    std::deque<std::int64_t> known_ns_; ///< times of the last right readings, since the clock was set
+    int right_ = 0;                     ///< readings in a row
+    bool set_back_ = false;             ///< the clock, since `last_established_`
+    Run wrong_{};                       ///< the last wrong run of many readings
     double wrong_rad_ = 0;
 };
 
