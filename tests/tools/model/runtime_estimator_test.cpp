@@ -6,14 +6,18 @@
 #include "tests/tools/support/small_model.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/inputs/input_description.hpp"
+#include "tools/model/run_time/host_model.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
+#include <vector>
 
 namespace {
 
 using namespace dfdyn::tools;
+using dfdyn::Physics;
 using dfdyn::tests::small_model;
 using dfdyn::tests::small_physics_model;
 
@@ -34,7 +38,19 @@ std::vector<float> run(RuntimeEstimator& estimator, int first, int last) {
     return predictions;
 }
 
+template <class Input, int lags, class... Effects>
+std::vector<int> identities(std::type_identity<Physics<Input, lags, Effects...>>) {
+    return {Effects::identity...};
+}
+
 } // namespace
+
+TEST_CASE("each effect of the firmware has an identity of its own") {
+    std::vector<int> all = identities(std::type_identity<HostPhysics>());
+    std::ranges::sort(all);
+    CHECK(std::ranges::adjacent_find(all) == all.end());
+    CHECK(all.size() >= 7);
+}
 
 TEST_CASE("an estimator continues from its snapshot as it did when the snapshot was taken") {
     DFDYN_SEEDED_ENGINE(engine);

@@ -7,21 +7,12 @@
 #include "tools/model/structure.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <type_traits>
 
 namespace dfdyn::tools {
 
 namespace {
-
-template <class Input, int lags, class... Effects>
-constexpr bool identities_differ(std::type_identity<Physics<Input, lags, Effects...>>) {
-    std::array identities{Effects::identity...};
-    std::ranges::sort(identities);
-    return std::ranges::adjacent_find(identities) == identities.end();
-}
-static_assert(identities_differ(std::type_identity<HostPhysics>()), "two effects have the same identity");
 
 /// `count` must be dynamic or the number of values.
 template <class Scalar, int count = dynamic, class Number>
