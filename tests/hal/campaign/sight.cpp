@@ -42,30 +42,34 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
             blind_.push_back({time_ns, std::max<std::int64_t>(1, time_ns - last_.time_ns), span_ns()});
             continue;
         }
-        const double t = seconds_of(time_ns);
-        const double velocity = site.truth.velocity(joint, t);
-        const double shown = sent.shown[joint].position_rad;
-        const double error = shown - site.truth.position(joint, t);
-        const double late_s = site.arm.synchronous ? 0.6e-3 : seconds_of(bus_jitter);
-        const double from_zero = shown - site.arm.zero_rad[joint];
-        const double step = site.arm.step_rad[joint];
-        const Reading reading{.true_ns = sent.true_ns,
-                              .stamp_ns = sent.frame.stamp_ns,
-                              .time_ns = time_ns,
-                              .shown_rad = shown,
-                              .error_rad = error,
-                              .right = !sent.uninformative &&
-                                       is_between(shown, site.truth.position(joint, t - late_s),
-                                                  site.truth.position(joint, t), 1e-7)};
-        const double motion = 1.5 * std::abs(velocity) * seconds_of(bus_period) + 3 * step;
-        take({.begin_ns = sent.true_ns,
-              .error_rad = error,
-              .from_zero_rad = from_zero,
-              .at_zero = std::abs(from_zero) <= motion && !can_move_to(reading, step),
-              .velocity = velocity},
-             reading);
+        examine(site, joint, sent, time_ns);
     }
     std::ranges::stable_sort(blind_, {}, &Blind::time_ns);
+}
+
+void JointSight::examine(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns) {
+    const double t = seconds_of(time_ns);
+    const double velocity = site.truth.velocity(joint, t);
+    const double shown = sent.shown[joint].position_rad;
+    const double error = shown - site.truth.position(joint, t);
+    const double late_s = site.arm.synchronous ? 0.6e-3 : seconds_of(bus_jitter);
+    const double from_zero = shown - site.arm.zero_rad[joint];
+    const double step = site.arm.step_rad[joint];
+    const Reading reading{.true_ns = sent.true_ns,
+                          .stamp_ns = sent.frame.stamp_ns,
+                          .time_ns = time_ns,
+                          .shown_rad = shown,
+                          .error_rad = error,
+                          .right =
+                              !sent.uninformative && is_between(shown, site.truth.position(joint, t - late_s),
+                                                                site.truth.position(joint, t), 1e-7)};
+    const double motion = 1.5 * std::abs(velocity) * seconds_of(bus_period) + 3 * step;
+    take({.begin_ns = sent.true_ns,
+          .error_rad = error,
+          .from_zero_rad = from_zero,
+          .at_zero = std::abs(from_zero) <= motion && !can_move_to(reading, step),
+          .velocity = velocity},
+         reading);
 }
 
 bool JointSight::can_move_to(const Reading& reading, double step_rad) const {

@@ -55,6 +55,7 @@ class JointSight {
     };
     /// Whether the joint can have moved there from the reading before: then it only passes its zero.
     [[nodiscard]] bool can_move_to(const Reading& reading, double step_rad) const;
+    void examine(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns);
     void take(Run seen, const Reading& reading);
     void begin_run(Run seen, const Reading& reading);
     [[nodiscard]] std::int64_t span_ns() const;

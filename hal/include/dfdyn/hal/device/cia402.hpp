@@ -194,23 +194,10 @@ class Cia402Drive {
         const std::span<const std::uint8_t> data(frame.data.data(), frame.length);
         sending_ = true;
         if (positions) {
-            const bool restarted = std::exchange(position_restarted_, false);
-            value.position_reason = encoder_fault_ ? Reason::encoder_fault : condition;
-            value.position_reason = restarted ? Reason::device_restarted : value.position_reason;
-            value.raw_zero = config_.position.extract_raw(data) == 0;
-            value.position_rad = config_.position.extract(data);
-            value.step_rad = config_.position.step();
-            value.wrap_rad = config_.position.span();
-            value.from_zero_rad = value.position_rad - config_.position.offset;
+            read_position(data, condition, value);
         }
         if (has_effort() && frame.id == effort_id()) {
-            const bool restarted = std::exchange(effort_restarted_, false);
-            value.effort_reason = device_fault_ ? Reason::device_fault : condition;
-            value.effort_reason = restarted ? Reason::device_restarted : value.effort_reason;
-            value.effort = config_.effort.extract(data);
-            if (value.effort_reason == Reason::ok && config_.effort.is_at_end(data)) {
-                value.effort_reason = Reason::output_saturated;
-            }
+            read_effort(data, condition, value);
         }
         if (!in_step) {
             value.position_reason = refused(value.position_reason);
@@ -218,6 +205,29 @@ class Cia402Drive {
             value.stamp_ns = step.late() ? frame.stamp_ns : value.stamp_ns;
         }
         return decoded;
+    }
+
+    constexpr void read_position(std::span<const std::uint8_t> data, Reason condition,
+                                 JointValue& value) noexcept {
+        const bool restarted = std::exchange(position_restarted_, false);
+        value.position_reason = encoder_fault_ ? Reason::encoder_fault : condition;
+        value.position_reason = restarted ? Reason::device_restarted : value.position_reason;
+        value.raw_zero = config_.position.extract_raw(data) == 0;
+        value.position_rad = config_.position.extract(data);
+        value.step_rad = config_.position.step();
+        value.wrap_rad = config_.position.span();
+        value.from_zero_rad = value.position_rad - config_.position.offset;
+    }
+
+    constexpr void read_effort(std::span<const std::uint8_t> data, Reason condition,
+                               JointValue& value) noexcept {
+        const bool restarted = std::exchange(effort_restarted_, false);
+        value.effort_reason = device_fault_ ? Reason::device_fault : condition;
+        value.effort_reason = restarted ? Reason::device_restarted : value.effort_reason;
+        value.effort = config_.effort.extract(data);
+        if (value.effort_reason == Reason::ok && config_.effort.is_at_end(data)) {
+            value.effort_reason = Reason::output_saturated;
+        }
     }
 
     /// Reason for a value that may be the answer to another SYNC.
