@@ -19,6 +19,7 @@
 #include "tools/diagnosis/output/diagnosis_page.hpp"
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
 #include "tools/diagnosis/output/error_sections.hpp"
+#include "tools/diagnosis/recordings/name_from_recordings.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -37,6 +38,7 @@ struct DiagnoseOptions {
     std::filesystem::path folder;
     std::filesystem::path header;
     std::vector<std::string> formats; ///< names of robot_formats()
+    std::vector<std::string> changed; ///< some of changed_names()
     bool quick = false;
     bool no_setup_check = false;
     bool json = false;
@@ -62,7 +64,16 @@ void check_torque_constants(const DiagnoseOptions& options, OutputKind outputs, 
     }
 }
 
-DiagnosisWork run_diagnosis(const Robot& robot, const std::vector<Recording>& recordings,
+void check_changed(const DiagnoseOptions& options, OutputKind outputs, std::size_t recordings) {
+    if (!options.changed.empty() && (recordings < 2 || outputs == OutputKind::wrench)) {
+        throw InputError(
+            std::string("--changed: expected several recordings of joint torques or currents, found ") +
+            (recordings < 2 ? "one recording" : "--outputs wrench"));
+    }
+}
+
+/// Takes the loads that it finds in single recordings off their outputs.
+DiagnosisWork run_diagnosis(const Robot& robot, std::vector<Recording>& recordings,
                             const DiagnoseOptions& options, OutputKind outputs) {
     Progress progress("searching for causes, round", 0);
     std::size_t rounds = 0;
@@ -72,7 +83,11 @@ DiagnosisWork run_diagnosis(const Robot& robot, const std::vector<Recording>& re
     how.measure = !options.quick;
     how.check_setup = !options.no_setup_check;
     how.progress = [&](int) { progress.update(++rounds); };
-    return diagnose(robot, joined_recording(recordings), how);
+    const SeveralRecordings several = fit_recordings(robot, recordings, how, parse_changed(options.changed));
+    take_loads_off(recordings, robot, several, outputs);
+    DiagnosisWork work = diagnose(robot, joined_recording(recordings), how);
+    name_from_recordings(work, robot, several, recordings);
+    return work;
 }
 
 /// Makes the model from the original recordings, with their gaps, instead of the joined one.
@@ -141,7 +156,8 @@ int run(const DiagnoseOptions& options) {
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     check_torque_constants(options, outputs, robot.joints.size());
-    const std::vector<Recording> recordings = options.recordings.read(columns_for(robot, outputs));
+    std::vector<Recording> recordings = options.recordings.read(columns_for(robot, outputs));
+    check_changed(options, outputs, recordings.size());
     check_folders(options);
     const DiagnosisWork work = run_diagnosis(robot, recordings, options, outputs);
     const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
@@ -209,6 +225,13 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("K1,K2...");
+    command
+        ->add_option("--changed", options->changed,
+                     "What differs between several recordings, and gets a value in each: payload, effects of "
+                     "one value per joint, or everything")
+        ->delimiter(',')
+        ->check(one_of(changed_names()))
+        ->type_name("EFFECT,...");
     add_result_options(*command, *options);
     command->add_flag("--no-held-out", options->quick,
                       "Leave out the error on held-out time, which takes half of the run");
@@ -217,6 +240,8 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
     add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn diagnose --robot arm.urdf --tip tool0 --log run.csv --outputs tau -o diagnosis\n"
+        "  dfdyn diagnose --robot arm.urdf --tip tool0 --log empty.csv --log loaded.csv --changed payload "
+        "--outputs tau -o load\n"
         "  dfdyn replay --model diagnosis/extended_model.json --log other.csv\n"
         "Exit status: 0 the report is written, whether or not it names a cause; 1 refused: the set-up is "
         "wrong "

@@ -20,29 +20,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Measured unit per N·m (N).
-Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOptions& options) {
-    Eigen::VectorXd gains = Eigen::VectorXd::Ones(signals.outputs());
-    if (options.outputs != OutputKind::motor_current) {
-        return gains;
-    }
-    if (!options.torque_constants.empty()) {
-        return Eigen::Map<const Eigen::VectorXd>(options.torque_constants.data(), gains.size())
-            .cwiseInverse();
-    }
-    TrainingData data;
-    data.positions = signals.measured.motion.position;
-    data.velocities = signals.measured.motion.velocity;
-    data.accelerations = signals.measured.motion.acceleration;
-    data.outputs = signals.measured.outputs;
-    const std::vector<TorqueGain> found =
-        estimate_torque_gains(signals.robot, data, signals.sign_velocity.maxCoeff());
-    for (Eigen::Index joint = 0; joint < gains.size(); ++joint) {
-        gains[joint] = found[static_cast<std::size_t>(joint)].gain;
-    }
-    return gains;
-}
-
 /// Returns the suspicions about the set-up, mistakes first.
 std::vector<Suspicion> suspicions_of_setup(const Robot& robot, const Recording& recording,
                                            const DiagnosisOptions& options) {
@@ -83,6 +60,28 @@ void add_unexplained(DiagnosisWork& work) {
 }
 
 } // namespace
+
+Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOptions& options) {
+    Eigen::VectorXd gains = Eigen::VectorXd::Ones(signals.outputs());
+    if (options.outputs != OutputKind::motor_current) {
+        return gains;
+    }
+    if (!options.torque_constants.empty()) {
+        return Eigen::Map<const Eigen::VectorXd>(options.torque_constants.data(), gains.size())
+            .cwiseInverse();
+    }
+    TrainingData data;
+    data.positions = signals.measured.motion.position;
+    data.velocities = signals.measured.motion.velocity;
+    data.accelerations = signals.measured.motion.acceleration;
+    data.outputs = signals.measured.outputs;
+    const std::vector<TorqueGain> found =
+        estimate_torque_gains(signals.robot, data, signals.sign_velocity.maxCoeff());
+    for (Eigen::Index joint = 0; joint < gains.size(); ++joint) {
+        gains[joint] = found[static_cast<std::size_t>(joint)].gain;
+    }
+    return gains;
+}
 
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
     DiagnosisWork work;

@@ -42,6 +42,12 @@ inline constexpr double gains_below_hz = 5;
 /// Share of rows in standstill above which errors are also reported without these rows.
 inline constexpr double noticeable_standing = 0.02;
 
+/// A parameter in one of several recordings, with its 95 % interval.
+struct ValueOfRecording {
+    std::string recording; ///< name of the file
+    double value = 0, low = 0, high = 0;
+};
+
 /// A cause from the catalogue, identified at a place.
 struct Finding {
     std::string effect, where, detail;
@@ -56,6 +62,10 @@ struct Finding {
     std::vector<OtherCause> indistinguishable, alternatives;
     std::string confirm;
     double margin_to_nothing = 0, margin_to_others = 0; ///< log-odds behind the confidence
+    /// With several recordings: the main parameter in each, or nothing; its standard deviation between them.
+    std::vector<ValueOfRecording> by_recording = {};
+    double spread = 0;
+    std::string only_in = {}; ///< the recording that alone has this cause; empty: all have it
 };
 
 /// A nuisance parameter with its estimate. It is not a finding.
@@ -96,7 +106,8 @@ struct Diagnosis {
     std::vector<bool> by_least_squares;
     Eigen::VectorXd standing_share; ///< m: share of the rows of these errors that `moving_nrmse` excludes
     double heldout_from_s = 0, heldout_to_s = 0;
-    std::vector<Finding> findings; ///< in descending order of gain
+    std::vector<std::string> recordings; ///< names of several that were fitted as one question; else empty
+    std::vector<Finding> findings;       ///< in descending order of gain
     std::vector<NuisanceEstimate> nuisance_estimates;
     std::vector<Unexplained> unexplained;
 };
@@ -141,6 +152,10 @@ struct DiagnosisWork {
 inline bool answered(const DiagnosisWork& work) {
     return work.signals != nullptr && !work.fitted_effects.candidates.empty();
 }
+
+/// Returns the measured unit per N·m (N) of each output: 1 except for currents, whose torque constants are
+/// given or estimated.
+Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOptions& options);
 
 /// Diagnoses a recording. Throws InputError if the recording is too short or does not match the robot.
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options);

@@ -37,4 +37,16 @@ Recording joined_recording(std::span<const Recording> recordings) {
     return joined;
 }
 
+std::vector<double> ends_in_joined(std::span<const Recording> recordings) {
+    std::vector<double> ends;
+    for (const Recording& recording : recordings) {
+        const bool empty = recording.row_count() == 0;
+        const double length = empty ? 0 : recording.time_s.back() - recording.time_s.front();
+        const double start =
+            ends.empty() ? (empty ? 0 : recording.time_s.front()) : ends.back() + 1e-9 * pause_ns;
+        ends.push_back(empty && !ends.empty() ? ends.back() : start + length);
+    }
+    return ends;
+}
+
 } // namespace dfdyn::tools

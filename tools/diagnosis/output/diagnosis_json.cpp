@@ -60,12 +60,26 @@ ordered_json to_json(const NuisanceEstimate& nuisance) {
     return entry;
 }
 
+/// Adds what several recordings say about a finding.
+void add_recordings(ordered_json& json, const Finding& finding) {
+    if (!finding.by_recording.empty()) {
+        json["spread"] = finding.spread;
+        for (const ValueOfRecording& one : finding.by_recording) {
+            json["by_recording"].push_back(
+                {{"recording", one.recording}, {"value", one.value}, {"ci95", {one.low, one.high}}});
+        }
+    }
+    if (!finding.only_in.empty()) {
+        json["only_in"] = finding.only_in;
+    }
+}
+
 ordered_json to_json(const Finding& finding, const std::string& output) {
     ordered_json parameters = ordered_json::array();
     for (const FoundParameter& parameter : finding.parameters) {
         parameters.push_back(to_json(parameter));
     }
-    return {
+    ordered_json json{
         {"effect", finding.effect},
         {"where", finding.where},
         {"parameters", std::move(parameters)},
@@ -75,6 +89,8 @@ ordered_json to_json(const Finding& finding, const std::string& output) {
         {"indistinguishable", causes(finding.indistinguishable, false)},
         {"alternatives", causes(finding.alternatives, true)},
         {"confirm", finding.confirm}};
+    add_recordings(json, finding);
+    return json;
 }
 
 /// The errors of plain least squares, and its coefficients for each output.
@@ -129,6 +145,9 @@ ordered_json diagnosis_json(const Diagnosis& diagnosis) {
           {"note", has_held_out(diagnosis)
                        ? "these figures are on data that fitted nothing"
                        : "nothing was held out: these figures are on data that fitted the model"}}}};
+    if (!diagnosis.recordings.empty()) {
+        json["recordings"] = diagnosis.recordings;
+    }
     ordered_json findings = ordered_json::array();
     for (const Finding& finding : diagnosis.findings) {
         findings.push_back(

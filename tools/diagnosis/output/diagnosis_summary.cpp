@@ -71,6 +71,12 @@ void print_finding(std::ostream& out, const Diagnosis& diagnosis, const Finding&
     out << parameter << (parameter.empty() ? "" : ", ");
     out << output << " error " << rounded_text(finding.rms_before) << " -> "
         << rounded_text(finding.rms_after) << ' ' << diagnosis.torque_units[index] << '\n';
+    if (!finding.by_recording.empty()) {
+        const auto [least, most] = std::ranges::minmax(finding.by_recording, {}, &ValueOfRecording::value);
+        out << "        in single recordings from " << rounded_text(least.value) << " to "
+            << rounded_text(most.value) << " (" << most.recording << "), standard deviation "
+            << rounded_text(finding.spread) << '\n';
+    }
     if (!finding.indistinguishable.empty()) {
         out << "        this motion hardly tells it from: ";
         for (std::size_t i = 0; i < finding.indistinguishable.size(); ++i) {

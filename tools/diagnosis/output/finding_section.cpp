@@ -85,6 +85,23 @@ ReportTable parameter_table(const Finding& finding) {
     return table;
 }
 
+/// The main parameter in each of several recordings.
+ReportTable recordings_table(const Finding& finding) {
+    const std::string unit = finding.parameters.front().unit;
+    ReportTable table{
+        finding.parameters.front().name + " in each recording",
+        {"recording", "value (" + unit + ")", "95 % interval"},
+        {},
+        "Standard deviation between recordings: " + rounded_text(finding.spread) + " " + unit +
+            ", which the interval above contains. A recording that tells little has a value near "
+            "the common one."};
+    for (const ValueOfRecording& one : finding.by_recording) {
+        table.rows.push_back({one.recording, rounded_text(one.value),
+                              rounded_text(one.low).append(" … ").append(rounded_text(one.high))});
+    }
+    return table;
+}
+
 ReportTable alternatives_table(const Finding& finding) {
     ReportTable table{"Considered and rejected", {"cause", "why not"}, {}, {}};
     for (const OtherCause& other : finding.alternatives) {
@@ -119,6 +136,9 @@ PageSection finding_section(const DiagnosisWork& work, const Finding& finding, s
     section.paragraphs.push_back("To settle it, " + finding.confirm + ".");
     section.charts.push_back(evidence_chart(work, finding, number));
     section.tables.push_back(parameter_table(finding));
+    if (!finding.by_recording.empty()) {
+        section.tables.push_back(recordings_table(finding));
+    }
     if (!finding.alternatives.empty()) {
         section.tables.push_back(alternatives_table(finding));
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/verdict/arm_fit.hpp"
 
-#include "tools/robot/firmware_chain.hpp"
+#include "tools/diagnosis/recordings/recording_information.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -18,26 +18,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index terms = 5;      ///< of plain least squares, for each joint
-constexpr double unknown = 1e3; ///< standard deviation (SI units) of a term without a prior
 /// Time between independent samples of the residual. Chosen with the thirteen recordings of
 /// tests/data/ur5_kufieta: 148 of 154 intervals of friction then hold the mean of the recordings.
 constexpr double correlation_s = 0.1;
-
-/// Returns the standard deviations of the links' parameters: what a robot's file may be wrong by.
-VectorXd link_deviations(const VectorXd& nominal) {
-    constexpr double mass_share = 0.1, centre_m = 0.03, inertia_share = 0.3;
-    constexpr double least = 1e-6; // of links without a mass
-    VectorXd deviations(nominal.size());
-    for (Index first = 0; first < nominal.size(); first += 10) {
-        const double mass = nominal[first];
-        const double inertia = (nominal[first + 4] + nominal[first + 7] + nominal[first + 9]) / 2;
-        deviations[first] = mass_share * mass;
-        deviations.segment<3>(first + 1).setConstant(centre_m * mass);
-        deviations.segment<6>(first + 4).setConstant(inertia_share * std::abs(inertia));
-    }
-    return deviations.cwiseMax(least);
-}
 
 /// The normal equations of all joints. Unknown are the links' parameters and then the terms of each joint,
 /// all as differences from the robot's file.
@@ -46,7 +29,7 @@ class ArmEquations {
     ArmEquations(const DiagnosisSignals& signals, const MatrixXd& measured,
                  const std::vector<MovingFit>& plain)
         : signals_(signals), target_(measured - signals.nominal), rest_(target_), plain_(plain),
-          links_(link_deviations(nominal_parameters(signals.robot, signals.kind))) {
+          links_(link_deviations(signals)) {
         for (Index joint = 0; joint < joints(); ++joint) {
             weight_.emplace_back(weight_of(joint));
             const MovingFit& own = plain[static_cast<std::size_t>(joint)];
@@ -57,7 +40,7 @@ class ArmEquations {
     }
 
     Index joints() const { return target_.cols(); }
-    Index first_term(Index joint) const { return links_.size() + terms * joint; }
+    Index first_term(Index joint) const { return dfdyn::tools::first_term(signals_, joint); }
 
     /// Solves with these deviations of the gains (n), and takes the noise from what is left.
     void solve(const VectorXd& gain_deviation) {
@@ -65,7 +48,7 @@ class ArmEquations {
         MatrixXd system = MatrixXd::Zero(size, size);
         VectorXd moment = VectorXd::Zero(size);
         system.diagonal().head(links_.size()) = links_.cwiseAbs2().cwiseInverse();
-        system.diagonal().tail(size - links_.size()).setConstant(1 / (unknown * unknown));
+        system.diagonal().tail(size - links_.size()).setConstant(1 / (unknown_deviation * unknown_deviation));
         for (Index joint = 0; joint < joints(); ++joint) {
             const auto number = static_cast<std::size_t>(joint);
             const double gain = gain_deviation[joint];
@@ -86,9 +69,9 @@ class ArmEquations {
         }
     }
 
-    VectorXd values(Index joint) const { return values_.segment(first_term(joint), terms); }
+    VectorXd values(Index joint) const { return values_.segment(first_term(joint), terms_of_joint); }
     MatrixXd covariance(Index joint) const {
-        return covariance_.block(first_term(joint), first_term(joint), terms, terms);
+        return covariance_.block(first_term(joint), first_term(joint), terms_of_joint, terms_of_joint);
     }
     const MatrixXd& rest() const { return rest_; } ///< T x n: what the values leave
 
@@ -101,14 +84,14 @@ class ArmEquations {
     }
 
     std::vector<Index> unknowns_of(Index joint) const {
-        std::vector<Index> result(static_cast<std::size_t>(links_.size() + terms));
-        std::iota(result.begin(), result.end() - terms, 0);
-        std::iota(result.end() - terms, result.end(), first_term(joint));
+        std::vector<Index> result(static_cast<std::size_t>(links_.size() + terms_of_joint));
+        std::iota(result.begin(), result.end() - terms_of_joint, 0);
+        std::iota(result.end() - terms_of_joint, result.end(), first_term(joint));
         return result;
     }
 
     MatrixXd columns(Index joint) const {
-        MatrixXd result(signals_.rows(), links_.size() + terms);
+        MatrixXd result(signals_.rows(), links_.size() + terms_of_joint);
         result << signals_.regressor(Eigen::seqN(joint, signals_.rows(), joints()), Eigen::all),
             plain_[static_cast<std::size_t>(joint)].columns;
         return result;
@@ -134,7 +117,7 @@ class ArmEquations {
 
 /// Returns the gains' deviations: the given torque constants hold where the data do not contradict them.
 VectorXd gain_deviations(const ArmEquations& free, bool gains_known) {
-    VectorXd result = VectorXd::Constant(free.joints(), unknown);
+    VectorXd result = VectorXd::Constant(free.joints(), unknown_deviation);
     for (Index joint = 0; gains_known && joint < free.joints(); ++joint) {
         if (!contradicts_known_gain(1 + free.values(joint)[0], free.covariance(joint)(0, 0))) {
             result[joint] = known_gain_deviation;
@@ -149,7 +132,7 @@ ArmFit fit_arm(const DiagnosisSignals& signals, const MatrixXd& measured, std::v
                bool gains_known) {
     constexpr int rounds = 3; // the noise hardly changes any more
     ArmEquations equations(signals, measured, plain);
-    equations.solve(VectorXd::Constant(equations.joints(), unknown));
+    equations.solve(VectorXd::Constant(equations.joints(), unknown_deviation));
     const VectorXd gains = gain_deviations(equations, gains_known);
     for (int round = 0; round < rounds; ++round) {
         equations.solve(gains);

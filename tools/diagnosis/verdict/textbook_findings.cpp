@@ -30,30 +30,6 @@ double between_recordings(TextbookTerm term) {
     return term == TextbookTerm::viscous || term == TextbookTerm::inertia ? 0.15 : 0.05;
 }
 
-/// Returns whether the gears of an arm are real ones: at half of the joints that move, and at two at least,
-/// no effect is exactly right.
-bool friction_everywhere(const DiagnosisWork& work) {
-    const DiagnosisSignals& signals = *work.signals;
-    const std::vector<bool>& inexact = work.fitted_effects.inexact;
-    std::size_t moving = 0;
-    std::size_t real = 0;
-    for (std::size_t joint = 0; !signals.wrench() && joint < signals.joints(); ++joint) {
-        if (signals.hardly_moves(joint)) {
-            continue;
-        }
-        ++moving;
-        const bool no_effect_fits = joint < inexact.size() && inexact[joint];
-        real += no_effect_fits || work.diagnosis.by_least_squares[joint] ? 1 : 0;
-    }
-    return real >= 2 && 2 * real >= moving;
-}
-
-/// Returns the probability that a value is known to its half.
-double probability_of_size(double value, double deviation) {
-    constexpr double share = 0.5;
-    return std::erf(share * std::abs(value) / (deviation * std::numbers::sqrt2));
-}
-
 /// Returns the finding of a term of a fit. `everywhere`: the fit is that of the arm, which has friction at
 /// every joint; only its size is in question.
 Finding finding_of(const DiagnosisWork& work, const Effect& effect, const MovingFit& fit, Index output,
@@ -152,6 +128,27 @@ MatrixXd rest_of(const DiagnosisWork& work, const std::vector<MovingFit>& fits) 
 }
 
 } // namespace
+
+bool friction_everywhere(const DiagnosisWork& work) {
+    const DiagnosisSignals& signals = *work.signals;
+    const std::vector<bool>& inexact = work.fitted_effects.inexact;
+    std::size_t moving = 0;
+    std::size_t real = 0;
+    for (std::size_t joint = 0; !signals.wrench() && joint < signals.joints(); ++joint) {
+        if (signals.hardly_moves(joint)) {
+            continue;
+        }
+        ++moving;
+        const bool no_effect_fits = joint < inexact.size() && inexact[joint];
+        real += no_effect_fits || work.diagnosis.by_least_squares[joint] ? 1 : 0;
+    }
+    return real >= 2 && 2 * real >= moving;
+}
+
+double probability_of_size(double value, double deviation) {
+    constexpr double share = 0.5;
+    return std::erf(share * std::abs(value) / (deviation * std::numbers::sqrt2));
+}
 
 void name_by_least_squares(DiagnosisWork& work) {
     constexpr Index fewest_blocks = 10; // twice the coefficients

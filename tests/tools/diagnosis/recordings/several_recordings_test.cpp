@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Three motions of one simulated UR5: bristle friction, rotors, a wrong link, and a load in one of the
+// motions. The simulator integrates the arm; it knows nothing of the columns that are fitted.
+#include "tools/diagnosis/recordings/name_from_recordings.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/base/recording/columns_matrix.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/diagnosis/extension/joined_recording.hpp"
+#include "tools/robot/firmware_chain.hpp"
+#include "tools/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace several_recordings_test {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+using Eigen::Index;
+
+constexpr std::size_t loaded = 1; ///< recording with a load
+const Payload load{0, 2.0, {0.05, 0.02, 0.04}};
+
+/// A scenario of 25 s. Each number gives another motion.
+Scenario scenario_of(const Robot& robot, std::size_t number) {
+    constexpr std::array highest_hz{0.6, 0.3, 0.45};
+    Scenario scenario = read_scenario(DFDYN_TEST_DATA_DIR "/scenarios/ur5_multisine.json", robot);
+    scenario.seed = 100 * seed() + number;
+    scenario.recording.samples = 3125;
+    std::get<MultisineTask>(scenario.task).highest_hz = highest_hz[number];
+    return scenario;
+}
+
+Recording recording_of(const Robot& robot, const Scenario& scenario, const std::string& name) {
+    Simulation simulation(robot, scenario);
+    Recording recording;
+    recording.source = name;
+    recording.position.names = joint_names("q", 6);
+    recording.output.names = output_names(OutputKind::joint_torque, 6);
+    for (std::size_t row = 0; row < scenario.recording.samples; ++row) {
+        const SimulatedSample sample = simulation.next();
+        recording.time_s.push_back(sample.time_s);
+        recording.time_ns.push_back(std::llround(sample.time_s * 1e9));
+        recording.gap_before.push_back(row == 0 ? 1 : 0);
+        for (Index joint = 0; joint < 6; ++joint) {
+            recording.position.values.push_back(sample.position[joint]);
+            recording.output.values.push_back(sample.torque[joint]);
+        }
+    }
+    return recording;
+}
+
+/// Three motions. `wrong_link`: the forearm is 1 kg heavier, with its centre 15 cm and 5 cm elsewhere.
+std::vector<Recording> motions(const Robot& robot, bool with_load, bool wrong_link) {
+    std::vector<Recording> recordings;
+    for (std::size_t number = 0; number < 3; ++number) {
+        Scenario scenario = scenario_of(robot, number);
+        if (with_load && number == loaded) {
+            scenario.payloads = {load};
+        }
+        if (wrong_link) {
+            scenario.robot_errors.links = {{2, 1, {0.15, 0, 0.05}}};
+        }
+        recordings.push_back(recording_of(robot, scenario, "motion" + std::to_string(number) + ".csv"));
+    }
+    return recordings;
+}
+
+SeveralRecordings answer_of(const Robot& robot, const std::vector<Recording>& recordings,
+                            const std::vector<std::string>& changed) {
+    return fit_recordings(robot, recordings, {}, parse_changed(changed));
+}
+
+TEST_CASE("a wrong link and the load of one recording of three are told apart, and friction and rotors are "
+          "within their intervals") {
+    INFO("DFDYN_TEST_SEED=" << seed());
+    const Robot robot = ur5();
+    const std::vector<Recording> recordings = motions(robot, true, true);
+    const SeveralRecordings several = answer_of(robot, recordings, {"payload"});
+    REQUIRE(several.answered());
+    REQUIRE(several.answer.loads.size() == 1);
+    const RecordingLoad& found = several.answer.loads.front();
+    CHECK(found.recording == loaded);
+    const double deviation = std::sqrt(found.covariance(0, 0));
+    CHECK(std::abs(found.parameters[0] - load.mass) < std::max(3 * deviation, 0.05));
+    CHECK(deviation < 0.4);
+    for (Index axis = 0; axis < 3; ++axis) {
+        const double moment = load.mass * load.centre[axis];
+        CHECK(std::abs(found.parameters[1 + axis] - moment) <
+              4 * std::sqrt(found.covariance(1 + axis, 1 + axis)));
+    }
+    REQUIRE_FALSE(several.answer.wrong_links.empty());
+    CHECK(several.answer.wrong_links.front().body == 2);
+
+    const PooledFit& fit = several.answer.fit;
+    const Index links = 60;
+    int held = 0;
+    for (Index joint = 0; joint < 6; ++joint) {
+        const Eigen::Vector3d truth =
+            joint < 3 ? Eigen::Vector3d(1.5, 8, 8) : Eigen::Vector3d(0.5, 2, 2); // rotor, viscous, dry
+        for (Index term = 1; term <= 3; ++term) {
+            const Index at = links + terms_of_joint * joint + term;
+            const double reach = 1.96 * std::hypot(std::sqrt(fit.covariance(at, at)), fit.spread[at]);
+            held += std::abs(fit.value[at] - truth[term - 1]) < reach ? 1 : 0;
+        }
+    }
+    CHECK(held >= 16); // of 18
+}
+
+TEST_CASE("no load is named where there is none, and what is taken off is the load's torque") {
+    INFO("DFDYN_TEST_SEED=" << seed());
+    const Robot robot = ur5();
+    const std::vector<Recording> empty = motions(robot, false, false);
+    CHECK(answer_of(robot, empty, {"payload"}).answer.loads.empty());
+    CHECK(answer_of(robot, empty, {"payload"}).answer.wrong_links.empty());
+
+    std::vector<Recording> carried = motions(robot, true, false);
+    CHECK(answer_of(robot, carried, {}).answer.loads.empty()); // it was not said to change
+    const SeveralRecordings several = answer_of(robot, carried, {"payload"});
+    REQUIRE(several.answer.loads.size() == 1);
+    CHECK(several.answer.wrong_links.empty());
+    const Eigen::MatrixXd before = columns_matrix(carried[loaded].output);
+    take_loads_off(carried, robot, several, OutputKind::joint_torque);
+    const Eigen::MatrixXd taken = before - columns_matrix(carried[loaded].output);
+    const MeasuredMotion motion = measured_motion(carried[loaded]);
+    const DiagnosisSignals signals = diagnosis_signals(robot, OutputKind::joint_torque, motion);
+    const InertialParameters body =
+        moved(body_parameters(load.mass, load.centre, Eigen::Matrix3d::Zero()), robot.tip_placement);
+    const Eigen::MatrixXd torque = signals.of_body(5, body);
+    CHECK((taken.topRows(torque.rows()) - torque).norm() < 0.15 * torque.norm());
+}
+
+TEST_CASE("one recording, wrenches and unknown effects have no answer") {
+    const Robot robot = ur5();
+    const Recording one = recording_of(robot, scenario_of(robot, 0), "one.csv");
+    CHECK_FALSE(answer_of(robot, {one}, {}).answered());
+    DiagnosisOptions wrench;
+    wrench.outputs = OutputKind::wrench;
+    CHECK_FALSE(fit_recordings(robot, {one, one}, wrench, {}).answered());
+    CHECK_THROWS_AS(parse_changed({"backlash"}), InputError);
+    CHECK(parse_changed({"everything"}).payload);
+    CHECK(parse_changed({"viscous_friction"}).terms == std::array{false, false, true, false, false});
+}
+
+TEST_CASE("the same recording twice gives the same values") {
+    const Robot robot = ur5();
+    const Recording one = recording_of(robot, scenario_of(robot, 0), "one.csv");
+    const PooledFit twice = answer_of(robot, {one, one}, {}).answer.fit;
+    for (Index k = 0; k < twice.value.size(); ++k) {
+        CHECK(twice.difference[0][k] == Approx(twice.difference[1][k]).margin(1e-9));
+    }
+    for (Index joint = 0; joint < 6; ++joint) {
+        const Index dry = 60 + terms_of_joint * joint + 3;
+        CHECK(twice.value[dry] == Approx(joint < 3 ? 8 : 2).epsilon(0.25));
+        CHECK(twice.spread[dry] > 0.01 * twice.value[dry]); // hardly known from two
+    }
+}
+
+} // namespace several_recordings_test

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// What one recording tells about p parameters of a linear model: the normal equations, in units of its own
+/// noise, so that the inverse of `information` is the covariance of its estimate.
+struct RecordingInformation {
+    Eigen::MatrixXd information; ///< p x p
+    Eigen::VectorXd moment;      ///< p
+};
+
+/// What is known of p parameters before the recordings.
+struct PooledPrior {
+    Eigen::MatrixXd covariance; ///< p x p, of the value that is common to all recordings, whose mean is 0
+    /// p: expected standard deviation between recordings: part of the size of the parameter `spread_of`, and
+    /// a least one.
+    Eigen::VectorXd relative_spread, least_spread;
+    std::vector<Eigen::Index> spread_of; ///< p: number of a parameter
+    /// p: parameters of one group have the same ratio of their spread to the expected one.
+    std::vector<Eigen::Index> group;
+    /// p x p per recording: covariance of what may differ in it besides the spread; empty: nothing.
+    std::vector<Eigen::MatrixXd> changed;
+};
+
+/// Parameters of several recordings of one arm.
+struct PooledFit {
+    Eigen::VectorXd value;                   ///< p: common to the recordings
+    Eigen::MatrixXd covariance;              ///< p x p, of the common value
+    Eigen::VectorXd spread;                  ///< p: standard deviation between recordings
+    Eigen::VectorXd ratio;                   ///< per group: spread over the expected one
+    std::vector<Eigen::VectorXd> difference; ///< p per recording: its own value less the common one
+    std::vector<Eigen::MatrixXd> difference_covariance; ///< p x p per recording
+    std::vector<Eigen::VectorXd> own_deviation; ///< p per recording: standard deviation of its own value
+    double evidence = 0; ///< log-evidence, up to a constant that depends on the recordings alone
+};
+
+/// Fits the random-effects model: in recording r the parameters are value + d_r, where d_r is normal with the
+/// spread of each parameter (N. Laird and J. Ware, 1982). The spread is the mode of its posterior by
+/// expectation maximisation, with an inverse chi-squared prior at the expected one that is worth three
+/// recordings of one parameter. `start`: ratios of a similar fit, or empty. Throws std::logic_error without
+/// recordings. Cost: O(p³) per recording and iteration, of which there are 5 to 60.
+PooledFit pool(const std::vector<RecordingInformation>& recordings, const PooledPrior& prior,
+               const Eigen::VectorXd& start = {});
+
+} // namespace dfdyn::tools
