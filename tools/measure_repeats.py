@@ -22,14 +22,14 @@ LEAST_TRAVEL = 0.05  # rad; joints that move less have no friction to be seen
 FRICTION = {"coulomb_friction": "coulomb", "viscous_friction": "viscous"}  # and its coefficient in least squares
 
 
-def diagnosed(dfdyn, log, folder):
-    """Returns the diagnosis of a recording."""
+def diagnosed(dfdyn, logs, folder, *more):
+    """Returns the diagnosis of recordings. `more`: further options."""
     command = [
-        dfdyn, "diagnose", "--robot", ROBOT, "--tip", "ee_link", "--outputs", "i", "--skip-bad-rows", "--log", log,
-        "--torque-constants", TORQUE_CONSTANTS, "--quiet", "-o", folder]
+        dfdyn, "diagnose", "--robot", ROBOT, "--tip", "ee_link", "--outputs", "i", "--skip-bad-rows", "--log",
+        ",".join(map(str, logs)), "--torque-constants", TORQUE_CONSTANTS, "--quiet", "-o", folder, *more]
     status = subprocess.run(command, check=False, stdout=subprocess.DEVNULL).returncode
     if status not in (0, 1):  # 1: refused, with the reason in the diagnosis
-        sys.exit(f"measure_repeats.py: {log}: status {status}")
+        sys.exit(f"{sys.argv[0]}: {logs}: status {status}")
     return json.loads((folder / "diagnosis.json").read_text(encoding="utf-8"))
 
 
@@ -87,12 +87,22 @@ def friction_table(runs, moving, effect, coefficient):
     return held, named
 
 
+def logs_of_arm():
+    """Returns the recordings of the arm in motion."""
+    return sorted(DATA.glob("Movement_No*.csv"), key=lambda log: (int(log.stem.split("_")[1][2:]), log.stem))
+
+
+def named_causes(diagnosis):
+    """Returns effect and place of the named causes."""
+    return {(one["effect"], one["where"]) for one in diagnosis["findings"] if one["confidence"] >= NAMED}
+
+
 def main():
     """Diagnoses the runs and prints the tables."""
     dfdyn = sys.argv[1]
     folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else "build/repeats")
-    logs = sorted(DATA.glob("Movement_No*.csv"), key=lambda log: (int(log.stem.split("_")[1][2:]), log.stem))
-    runs = {short_name(log): diagnosed(dfdyn, log, folder / log.stem) for log in logs}
+    logs = logs_of_arm()
+    runs = {short_name(log): diagnosed(dfdyn, [log], folder / log.stem) for log in logs}
     moving = {short_name(log): moving_joints(log) for log in logs}
     refused = [name for name, run in runs.items() if run["refused"]]
     runs = {name: run for name, run in runs.items() if not run["refused"]}
@@ -100,8 +110,9 @@ def main():
     counts = [friction_table(runs, moving, *one) for one in FRICTION.items()]
     held, named = (sum(column) for column in zip(*counts))
     print(f"\nof {named} values of friction {held} have an interval that holds the mean of the runs")
-    causes = [{(one["effect"], one["where"]) for one in run["findings"] if one["confidence"] >= NAMED} for run in runs.values()]
+    causes = [named_causes(run) for run in runs.values()]
     print(f"named causes agree by a Jaccard index of {jaccard(causes):.2f}, mean of all pairs of runs")
 
 
-main()
+if __name__ == "__main__":
+    main()
