@@ -22,10 +22,12 @@ NUMBER = re.compile(r"-?\d+(?:\.(\d+))?(?:e([+-]?\d+))?")
 
 
 def shows(cell, value):
-    """Returns whether a cell's first number is `value`, rounded to the digits that the cell has; a share may be in %."""
+    """Returns whether a cell's first number is `value`, rounded to the digits that the cell has, or a bound of it; a share may be in %."""
     found = NUMBER.search(cell.replace("\u2212", "-"))
     if not found:
         return False
+    if cell.startswith(">"):
+        return value > float(found[0])
     scale = 100 if "%" in cell else 1
     last_digit = 10.0 ** (int(found[2] or 0) - len(found[1] or ""))
     return abs(float(found[0]) - scale * value) <= 0.501 * last_digit
