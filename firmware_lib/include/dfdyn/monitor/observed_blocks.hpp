@@ -2,9 +2,13 @@
 #pragma once
 
 #include "dfdyn/input/derivative_free_reduced.hpp"
+#include "dfdyn/monitor/block_noise.hpp"
 #include "dfdyn/monitor/output_block.hpp"
 #include "dfdyn/monitor/tool_columns.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <type_traits>
 
 namespace dfdyn {
