@@ -38,7 +38,7 @@ struct DiagnoseOptions {
     std::filesystem::path folder;
     std::filesystem::path header;
     std::vector<std::string> formats; ///< names of robot_formats()
-    std::vector<std::string> changed; ///< some of changed_names()
+    std::vector<std::string> changed; ///< "payload" or nothing
     bool quick = false;
     bool no_setup_check = false;
     bool json = false;
@@ -72,7 +72,7 @@ void check_changed(const DiagnoseOptions& options, OutputKind outputs, std::size
     }
 }
 
-/// Takes the loads that it finds in single recordings off their outputs.
+/// Takes the loads that it finds in single recordings off their outputs, unless the set-up is wrong.
 DiagnosisWork run_diagnosis(const Robot& robot, std::vector<Recording>& recordings,
                             const DiagnoseOptions& options, OutputKind outputs) {
     Progress progress("searching for causes, round", 0);
@@ -83,8 +83,15 @@ DiagnosisWork run_diagnosis(const Robot& robot, std::vector<Recording>& recordin
     how.measure = !options.quick;
     how.check_setup = !options.no_setup_check;
     how.progress = [&](int) { progress.update(++rounds); };
-    const SeveralRecordings several = fit_recordings(robot, recordings, how, parse_changed(options.changed));
-    take_loads_off(recordings, robot, several, outputs);
+    const SeveralRecordings several = fit_recordings(robot, recordings, how, !options.changed.empty());
+    if (!options.changed.empty() && !several.answered()) {
+        throw InputError("--changed: expected at least two recordings of two seconds without a gap, found " +
+                         std::to_string(several.pooled.size()));
+    }
+    how.torque_gains = several.torque_gains;
+    if (!several.answer.loads.empty() && !refuses_setup(robot, joined_recording(recordings), how)) {
+        take_loads_off(recordings, robot, several, outputs);
+    }
     DiagnosisWork work = diagnose(robot, joined_recording(recordings), how);
     name_from_recordings(work, robot, several, recordings);
     return work;
@@ -226,12 +233,12 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         ->check(positive_number())
         ->type_name("K1,K2...");
     command
-        ->add_option("--changed", options->changed,
-                     "What differs between several recordings, and gets a value in each: payload, effects of "
-                     "one value per joint, or everything")
-        ->delimiter(',')
-        ->check(one_of(changed_names()))
-        ->type_name("EFFECT,...");
+        ->add_option(
+            "--changed", options->changed,
+            "What differs between several recordings: the load at the tip, which gets a value in each "
+            "that has one")
+        ->check(one_of({effects::payload().name}))
+        ->type_name("payload");
     add_result_options(*command, *options);
     command->add_flag("--no-held-out", options->quick,
                       "Leave out the error on held-out time, which takes half of the run");

@@ -66,6 +66,9 @@ Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOpt
     if (options.outputs != OutputKind::motor_current) {
         return gains;
     }
+    if (options.torque_gains.size() > 0) {
+        return options.torque_gains;
+    }
     if (!options.torque_constants.empty()) {
         return Eigen::Map<const Eigen::VectorXd>(options.torque_constants.data(), gains.size())
             .cwiseInverse();
@@ -81,6 +84,11 @@ Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOpt
         gains[joint] = found[static_cast<std::size_t>(joint)].gain;
     }
     return gains;
+}
+
+bool refuses_setup(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
+    Diagnosis diagnosis;
+    return options.check_setup && suspect(diagnosis, suspicions_of_setup(robot, recording, options));
 }
 
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {

@@ -126,6 +126,9 @@ inline bool has_held_out(const Diagnosis& diagnosis) {
 struct DiagnosisOptions {
     OutputKind outputs = OutputKind::joint_torque;
     std::vector<double> torque_constants; ///< N·m/A per joint; empty: unknown, each joint has its own gain
+    /// Measured unit per N·m of currents, as for several recordings; empty: from the constants or the
+    /// recording.
+    Eigen::VectorXd torque_gains = {};
     bool measure = true;     ///< whether to measure the held-out error, which doubles the run time
     bool check_setup = true; ///< false: continues even if units, clock, columns or signs look wrong
     std::function<void(int round)> progress = {};
@@ -154,8 +157,11 @@ inline bool answered(const DiagnosisWork& work) {
 }
 
 /// Returns the measured unit per N·m (N) of each output: 1 except for currents, whose torque constants are
-/// given or estimated.
+/// given or estimated, unless the options have such gains.
 Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOptions& options);
+
+/// Returns whether the set-up check, if it is asked for, refuses the recording.
+bool refuses_setup(const Robot& robot, const Recording& recording, const DiagnosisOptions& options);
 
 /// Diagnoses a recording. Throws InputError if the recording is too short or does not match the robot.
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options);

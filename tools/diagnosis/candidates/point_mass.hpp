@@ -12,6 +12,8 @@ namespace dfdyn::tools {
 /// The span of candidates that add a point mass to the last link, such as a payload.
 inline constexpr const char* last_body = "last body";
 
+inline constexpr double farthest_payload = 0.5; ///< m, of a payload's centre of mass from the tip
+
 /// Inertial parameters of a point mass (kg) at `centre` (m).
 InertialParameters point_mass(double mass, const Eigen::Vector3d& centre);
 

@@ -20,7 +20,6 @@ constexpr std::array payload_centre{ParameterKind{"com_x", "m"}, ParameterKind{"
                                     ParameterKind{"com_z", "m"}};
 constexpr ParameterKind payload_attached{"attached", "s", std::nullopt};
 constexpr const char* one_payload = "payload"; // family: at most one payload, either permanent or picked up
-constexpr double farthest_payload = 0.5;       // m from the tip
 
 /// Best mass and first moments with the centre of mass at its farthest admissible distance, by the Lagrange
 /// multiplier of this bound.

@@ -2,6 +2,7 @@
 #include "tools/diagnosis/extension/joined_recording.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace dfdyn::tools {
 
@@ -39,12 +40,13 @@ Recording joined_recording(std::span<const Recording> recordings) {
 
 std::vector<double> ends_in_joined(std::span<const Recording> recordings) {
     std::vector<double> ends;
+    std::optional<double> end;
     for (const Recording& recording : recordings) {
-        const bool empty = recording.row_count() == 0;
-        const double length = empty ? 0 : recording.time_s.back() - recording.time_s.front();
-        const double start =
-            ends.empty() ? (empty ? 0 : recording.time_s.front()) : ends.back() + 1e-9 * pause_ns;
-        ends.push_back(empty && !ends.empty() ? ends.back() : start + length);
+        if (recording.row_count() > 0) {
+            const double start = end ? *end + 1e-9 * pause_ns : recording.time_s.front();
+            end = start + recording.time_s.back() - recording.time_s.front();
+        }
+        ends.push_back(end.value_or(0));
     }
     return ends;
 }

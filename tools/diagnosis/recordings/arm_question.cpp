@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/recordings/arm_question.hpp"
 
+#include "tools/diagnosis/candidates/point_mass.hpp"
 #include "tools/diagnosis/effects/effect.hpp"
 #include "tools/diagnosis/verdict/textbook.hpp"
 #include "tools/robot/firmware_chain.hpp"
@@ -61,15 +62,14 @@ double least_spread(TextbookTerm term, double joint_inertia) {
 }
 
 /// Sets the prior of the terms of a joint. Groups of spreads: 0 has the links, 1 to 5 the terms.
-void set_terms(PooledPrior& prior, const DiagnosisSignals& signals, Index joint, bool gains_known) {
+void set_terms(PooledPrior& prior, const DiagnosisSignals& signals, Index joint) {
     const double inertia = signals.joint_inertia.col(joint).mean();
     for (Index term = 0; term < terms_of_joint; ++term) {
         const auto kind = static_cast<TextbookTerm>(term);
         const Index at = first_term(signals, joint) + term;
         const auto number = static_cast<std::size_t>(at);
         const TermSpread spread = term_spread(kind);
-        const bool known = kind == TextbookTerm::gain && gains_known;
-        prior.covariance(at, at) = std::pow(known ? known_gain_deviation : unknown_deviation, 2);
+        prior.covariance(at, at) = unknown_deviation * unknown_deviation;
         prior.relative_spread[at] = kind == TextbookTerm::gain ? 0 : spread.part;
         prior.least_spread[at] = least_spread(kind, inertia);
         prior.spread_of[number] = first_term(signals, joint) + static_cast<Index>(spread.of);
@@ -77,11 +77,10 @@ void set_terms(PooledPrior& prior, const DiagnosisSignals& signals, Index joint,
     }
 }
 
-/// Returns the prior of an arm whose links may differ as in `fit_arm`.
-PooledPrior arm_prior(const DiagnosisSignals& signals, std::size_t recordings, const Changed& changed,
-                      bool gains_known) {
-    constexpr double link_spread =
-        0.3; // of the links' deviations: what model errors look like in a recording
+/// Returns the prior of an arm whose links may differ as in `fit_arm`, with unknown gains.
+PooledPrior arm_prior(const DiagnosisSignals& signals, std::size_t recordings) {
+    // of the links' deviations: what model errors look like in a recording
+    constexpr double link_spread = 0.3;
     const Index size = first_term(signals, signals.outputs());
     const VectorXd links = link_deviations(signals);
     PooledPrior prior;
@@ -92,16 +91,22 @@ PooledPrior arm_prior(const DiagnosisSignals& signals, std::size_t recordings, c
     prior.group.assign(static_cast<std::size_t>(size), 0);
     prior.spread_of.resize(static_cast<std::size_t>(size));
     std::iota(prior.spread_of.begin(), prior.spread_of.end(), Index{0});
-    MatrixXd differs = MatrixXd::Zero(size, size);
     for (Index joint = 0; joint < signals.outputs(); ++joint) {
-        set_terms(prior, signals, joint, gains_known);
-        for (std::size_t term = 0; term < changed.terms.size(); ++term) {
-            const Index at = first_term(signals, joint) + static_cast<Index>(term);
-            differs(at, at) = changed.terms[term] ? unknown_deviation * unknown_deviation : 0;
+        set_terms(prior, signals, joint);
+    }
+    prior.changed.assign(recordings, MatrixXd::Zero(size, size));
+    return prior;
+}
+
+/// Makes those gains known that a fit with unknown ones does not contradict.
+void set_known_gains(PooledPrior& prior, const DiagnosisSignals& signals, const PooledFit& free) {
+    for (Index joint = 0; joint < signals.outputs(); ++joint) {
+        const Index at = first_term(signals, joint);
+        const double variance = free.covariance(at, at) + free.spread[at] * free.spread[at];
+        if (!contradicts_known_gain(1 + free.value[at], variance)) {
+            prior.covariance(at, at) = known_gain_deviation * known_gain_deviation;
         }
     }
-    prior.changed.assign(recordings, differs);
-    return prior;
 }
 
 /// A load at the tip: ten inertial parameters there, and what they are in the last body's frame.
@@ -129,13 +134,17 @@ struct LoadModel {
 class HypothesisSearch {
   public:
     HypothesisSearch(const DiagnosisSignals& signals, const std::vector<RecordingInformation>& recordings,
-                     const Changed& changed, bool gains_known)
-        : signals_(signals), recordings_(recordings), changed_(changed), load_(signals),
-          prior_(arm_prior(signals, recordings.size(), changed, gains_known)),
-          fit_(pool(recordings, prior_)) {}
+                     bool loads_differ, bool gains_known)
+        : signals_(signals), recordings_(recordings), loads_differ_(loads_differ), load_(signals),
+          prior_(arm_prior(signals, recordings.size())), fit_(pool(recordings, prior_)) {
+        if (gains_known) {
+            set_known_gains(prior_, signals, fit_);
+            fit_ = pool(recordings, prior_, fit_.ratio);
+        }
+    }
 
     ArmAnswer answer() {
-        const std::size_t most = recordings_.size() + 2;
+        const std::size_t most = recordings_.size() + 3;
         for (std::size_t found = 0; found < most; ++found) {
             std::optional<ArmHypothesis> best = best_hypothesis();
             if (!best) {
@@ -145,12 +154,13 @@ class HypothesisSearch {
             fit_ = pool(recordings_, prior_, fit_.ratio);
             accepted_.push_back(std::move(*best));
         }
+        drop_explained();
         ArmAnswer answer;
         for (const ArmHypothesis& one : accepted_) {
-            if (one.recording) {
-                answer.loads.push_back(load_of(one));
-            } else {
+            if (one.body) {
                 answer.wrong_links.push_back(one);
+            } else {
+                answer.loads.push_back(load_of(one, prior_, fit_));
             }
         }
         answer.fit = std::move(fit_);
@@ -160,38 +170,74 @@ class HypothesisSearch {
   private:
     Index bodies() const { return signals_.regressor.cols() / 10; }
 
+    /// Drops hypotheses that those accepted after them explain, and weighs the others again.
+    void drop_explained() {
+        for (std::size_t i = 0; i < accepted_.size();) {
+            PooledPrior without = prior_;
+            accept(without, accepted_[i], -1);
+            PooledFit fit = pool(recordings_, without, fit_.ratio);
+            accepted_[i].margin = fit_.evidence - fit.evidence;
+            if (accepted_[i].margin >= least_evidence) {
+                ++i;
+                continue;
+            }
+            prior_ = std::move(without);
+            fit_ = std::move(fit);
+            accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(i));
+        }
+    }
+
     bool is_accepted(const ArmHypothesis& one) const {
         return std::ranges::any_of(accepted_, [&](const ArmHypothesis& other) {
             return one.body == other.body && one.recording == other.recording;
         });
     }
 
-    void accept(PooledPrior& prior, const ArmHypothesis& one) const {
+    /// Adds what a hypothesis allows to a prior; `sign` -1: takes it away.
+    void accept(PooledPrior& prior, const ArmHypothesis& one, double sign = 1) const {
         constexpr double wider = 4; // standard deviation of a wrong link, over that of the others
+        const Index first = 10 * one.body.value_or(bodies() - 1);
+        MatrixXd& covariance = one.recording ? prior.changed[*one.recording] : prior.covariance;
         if (one.body) {
-            prior.covariance.block<10, 10>(10 * *one.body, 10 * *one.body) *= wider * wider;
+            const Eigen::Array<double, 10, 1> usual = link_deviations(signals_).segment<10>(first).array();
+            covariance.diagonal().segment<10>(first).array() += sign * (wider * wider - 1) * usual.square();
         } else {
-            const Index last = 10 * (bodies() - 1);
-            prior.changed[*one.recording].block<10, 10>(last, last) += load_.covariance();
+            covariance.block<10, 10>(first, first) += sign * load_.covariance();
         }
     }
 
-    /// Returns every hypothesis with its evidence.
-    std::vector<ArmHypothesis> tried() const {
-        std::vector<ArmHypothesis> all;
+    std::vector<ArmHypothesis> all_hypotheses() const {
+        std::vector<ArmHypothesis> all(1); // a load in all recordings
         for (Index body = 0; body < bodies(); ++body) {
             all.push_back({.body = body, .recording = {}, .others = {}});
         }
-        for (std::size_t r = 0; changed_.payload && r < recordings_.size(); ++r) {
+        for (std::size_t r = 0; loads_differ_ && r < recordings_.size(); ++r) {
             all.push_back({.body = {}, .recording = r, .others = {}});
         }
-        std::erase_if(all, [&](const ArmHypothesis& one) { return is_accepted(one); });
-        for (ArmHypothesis& one : all) {
+        return all;
+    }
+
+    /// Returns every possible hypothesis with its evidence.
+    std::vector<ArmHypothesis> tried() const {
+        std::vector<ArmHypothesis> possible;
+        for (ArmHypothesis& one : all_hypotheses()) {
+            if (is_accepted(one)) {
+                continue;
+            }
             PooledPrior prior = prior_;
             accept(prior, one);
-            one.margin = pool(recordings_, prior, fit_.ratio).evidence - fit_.evidence;
+            const PooledFit fit = pool(recordings_, prior, fit_.ratio);
+            one.margin = fit.evidence - fit_.evidence;
+            if (one.body || is_load(load_of(one, prior, fit).parameters)) {
+                possible.push_back(std::move(one));
+            }
         }
-        return all;
+        return possible;
+    }
+
+    /// Returns whether these parameters at the tip are of a load: a mass within reach.
+    static bool is_load(const Eigen::Matrix<double, 10, 1>& parameters) {
+        return parameters[0] > 0 && parameters.segment<3>(1).norm() <= farthest_payload * parameters[0];
     }
 
     std::optional<ArmHypothesis> best_hypothesis() const {
@@ -210,25 +256,28 @@ class HypothesisSearch {
         return best;
     }
 
-    /// Returns the part of a recording's difference at the last body that is a load, not spread.
-    RecordingLoad load_of(const ArmHypothesis& one) const {
-        const std::size_t r = *one.recording;
+    /// Returns the part of what differs at the last body that is a load: not spread, and no error of the
+    /// link. `prior` has the hypothesis, and `fit` is its fit.
+    RecordingLoad load_of(const ArmHypothesis& one, const PooledPrior& prior, const PooledFit& fit) const {
         const Index last = 10 * (bodies() - 1);
         const Eigen::Matrix<double, 10, 10> part = load_.variance.asDiagonal() * load_.to_body.transpose();
-        MatrixXd total = load_.covariance();
-        total.diagonal() += fit_.spread.segment<10>(last).cwiseAbs2();
+        const std::size_t r = one.recording.value_or(0);
+        MatrixXd total = (one.recording ? prior.changed[r] : prior.covariance).block<10, 10>(last, last);
+        total.diagonal() += (one.recording ? 1.0 : 0.0) * fit.spread.segment<10>(last).cwiseAbs2();
         const Eigen::LLT<MatrixXd> factor(total);
         const MatrixXd gain = factor.solve(part.transpose()).transpose();
-        RecordingLoad load{r, one.margin, gain * fit_.difference[r].segment<10>(last), {}, {}};
+        const VectorXd& found = one.recording ? fit.difference[r] : fit.value;
+        const MatrixXd& uncertain = one.recording ? fit.difference_covariance[r] : fit.covariance;
+        RecordingLoad load{one.recording, one.margin, gain * found.segment<10>(last), {}, {}};
         load.covariance = MatrixXd(load_.variance.asDiagonal()) - gain * part.transpose() +
-                          gain * fit_.difference_covariance[r].block<10, 10>(last, last) * gain.transpose();
+                          gain * uncertain.block<10, 10>(last, last) * gain.transpose();
         load.of_body = load_.to_body * load.parameters;
         return load;
     }
 
     const DiagnosisSignals& signals_;
     const std::vector<RecordingInformation>& recordings_;
-    const Changed& changed_;
+    bool loads_differ_;
     LoadModel load_;
     PooledPrior prior_;
     PooledFit fit_;
@@ -238,8 +287,8 @@ class HypothesisSearch {
 } // namespace
 
 ArmAnswer ask_recordings(const DiagnosisSignals& signals, const std::vector<RecordingInformation>& recordings,
-                         const Changed& changed, bool gains_known) {
-    return HypothesisSearch(signals, recordings, changed, gains_known).answer();
+                         bool loads_differ, bool gains_known) {
+    return HypothesisSearch(signals, recordings, loads_differ, gains_known).answer();
 }
 
 } // namespace dfdyn::tools

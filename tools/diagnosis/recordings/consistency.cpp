@@ -39,7 +39,7 @@ std::vector<Size> sizes_of(const DiagnosisWork& work, const Finding& finding,
         const VectorXd rest = finding.rest.segment(first, count);
         first = end;
         const double square = count > 0 ? own.dot(share.cwiseAbs2()) : 0;
-        if (square > least_share * all) {
+        if (square > least_share * all && rest.squaredNorm() > 0) {
             const double noise = weighted_mean_square(rest, own);
             sizes.push_back({1 + own.cwiseProduct(share).dot(rest) / square,
                              noise * correlated_rows(rest, own, measured.rate_hz) / square});
@@ -48,7 +48,7 @@ std::vector<Size> sizes_of(const DiagnosisWork& work, const Finding& finding,
     return sizes;
 }
 
-/// Returns whether the mean size, with its spread between recordings, is within two deviations of zero.
+/// Returns whether the mean size, with its spread between recordings, is less than two deviations above zero.
 bool contradict(const std::vector<Size>& sizes) {
     constexpr double far = 2;
     double weights = 0, squares = 0, mean = 0;

@@ -6,12 +6,11 @@
 namespace dfdyn::tools {
 
 /// Names what several recordings say together, after the diagnosis of their joined recording (without loads):
-/// - the load of each recording that has one;
-/// - at the joints, friction, rotor inertia and offset, with one value for all recordings, an interval that
-/// has
-///   the spread between recordings, and the value in each. Where the gears are real ones
-///   (`friction_everywhere`) these are all causes there, and only links that all recordings together support
-///   are wrong. Elsewhere the diagnosis of the joined recording decides the names;
+/// - the load of all recordings, or of each that has one;
+/// - friction, rotor inertia and offset at the joints: one value for all recordings, the value in each, and
+///   an interval with the spread between them. Where the gears are real ones (`friction_everywhere`) these
+///   are all causes there, and only links and loads that all recordings together support are named.
+///   Elsewhere the diagnosis of the joined recording decides the names;
 /// - a confidence below 0.5 for another cause that the recordings contradict: the sizes that they give to it
 ///   have a mean within two standard deviations of zero (R. DerSimonian and N. Laird, 1986).
 ///

@@ -42,6 +42,7 @@ class RandomEffects {
     PooledFit fit() {
         constexpr int most_iterations = 60;
         constexpr double settled = 1e-3;
+        update_common(); // the expected spread depends on the value
         for (int iteration = 0; iteration < most_iterations; ++iteration) {
             update_common();
             const VectorXd before = fit_.ratio;

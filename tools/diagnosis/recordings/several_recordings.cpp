@@ -2,7 +2,7 @@
 #include "tools/diagnosis/recordings/several_recordings.hpp"
 
 #include "tools/base/text/error.hpp"
-#include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/diagnosis/verdict/textbook.hpp"
 
 #include <algorithm>
@@ -18,8 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr const char* everything = "everything";
 
 /// Returns the signals of a recording, or nothing if it is too short.
 std::optional<DiagnosisSignals> signals_of_recording(const Robot& robot, OutputKind outputs,
@@ -42,23 +40,24 @@ RecordingInformation information_with(const DiagnosisSignals& signals, const Vec
     return information_of(signals, measured, terms);
 }
 
-/// Returns the median of each row.
-VectorXd medians(MatrixXd values) {
-    VectorXd result(values.rows());
-    for (Index row = 0; row < values.rows(); ++row) {
-        VectorXd sorted = values.row(row).transpose();
-        std::ranges::sort(sorted);
-        result[row] = sorted[sorted.size() / 2];
-    }
-    return result;
+/// Returns the gains of the joined recording, which the diagnosis uses.
+VectorXd common_gains(const Robot& robot, const std::vector<Recording>& recordings,
+                      const DiagnosisOptions& options) {
+    return torque_gains(
+        diagnosis_signals(robot, options.outputs, measured_motion(joined_recording(recordings))), options);
 }
 
-VectorXd pooled_gains(const std::vector<DiagnosisSignals>& signals, const DiagnosisOptions& options) {
-    MatrixXd gains(signals.front().outputs(), std::ssize(signals));
-    for (std::size_t r = 0; r < signals.size(); ++r) {
-        gains.col(static_cast<Index>(r)) = torque_gains(signals[r], options);
+/// Returns the files' names, or their paths where names are equal.
+std::vector<std::string> names_of(const std::vector<Recording>& recordings) {
+    std::vector<std::string> names;
+    for (const Recording& one : recordings) {
+        names.push_back(std::filesystem::path(one.source).filename().string());
     }
-    return medians(std::move(gains));
+    const std::vector<std::string> short_names = names;
+    for (std::size_t r = 0; r < names.size(); ++r) {
+        names[r] = std::ranges::count(short_names, names[r]) > 1 ? recordings[r].source : names[r];
+    }
+    return names;
 }
 
 /// Interpolates a series (T x n) of the rows of a motion at the rows of its recording.
@@ -78,44 +77,12 @@ MatrixXd at_rows(const Recording& recording, const MeasuredMotion& measured, con
 
 } // namespace
 
-std::vector<std::string> changed_names() {
-    std::vector<std::string> names{effects::payload().name, effects::actuator_gain().name};
-    for (const Effect& effect : effect_catalogue()) {
-        if (effect.textbook) {
-            names.emplace_back(effect.name);
-        }
-    }
-    names.emplace_back(everything);
-    return names;
-}
-
-Changed parse_changed(const std::vector<std::string>& effects) {
-    const std::vector<std::string> known = changed_names();
-    Changed changed;
-    for (const std::string& name : effects) {
-        if (std::ranges::find(known, name) == known.end()) {
-            throw InputError(
-                "--changed: expected effects that one value per recording can describe, found \"" + name +
-                "\"");
-        }
-        const bool all = name == everything;
-        changed.payload = changed.payload || all || name == effects::payload().name;
-        const Effect* const effect = find_effect(name);
-        for (std::size_t term = 0; term < changed.terms.size(); ++term) {
-            const bool gain = term == 0 && name == effects::actuator_gain().name;
-            const bool own = effect != nullptr && effect->textbook == static_cast<TextbookTerm>(term);
-            changed.terms[term] = changed.terms[term] || all || gain || own;
-        }
-    }
-    return changed;
-}
-
 SeveralRecordings fit_recordings(const Robot& robot, const std::vector<Recording>& recordings,
-                                 const DiagnosisOptions& options, const Changed& changed) {
+                                 const DiagnosisOptions& options, bool loads_differ) {
     SeveralRecordings several;
+    several.names = names_of(recordings);
     std::vector<DiagnosisSignals> signals;
     for (std::size_t r = 0; r < recordings.size(); ++r) {
-        several.names.push_back(std::filesystem::path(recordings[r].source).filename().string());
         if (options.outputs == OutputKind::wrench || recordings.size() < 2) {
             continue;
         }
@@ -129,21 +96,24 @@ SeveralRecordings fit_recordings(const Robot& robot, const std::vector<Recording
     if (!several.answered()) {
         return several;
     }
-    several.torque_gains = pooled_gains(signals, options);
+    several.torque_gains = common_gains(robot, recordings, options);
     std::vector<RecordingInformation> information;
     for (const DiagnosisSignals& one : signals) {
         information.push_back(information_with(one, several.torque_gains));
     }
     const bool gains_known =
         options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
-    several.answer = ask_recordings(signals.front(), information, changed, gains_known);
+    several.answer = ask_recordings(signals.front(), information, loads_differ, gains_known);
     return several;
 }
 
 void take_loads_off(std::vector<Recording>& recordings, const Robot& robot, const SeveralRecordings& several,
                     OutputKind outputs) {
     for (const RecordingLoad& load : several.answer.loads) {
-        Recording& recording = recordings[several.pooled[load.recording]];
+        if (!load.recording) {
+            continue; // it is the same arm in all
+        }
+        Recording& recording = recordings[several.pooled[*load.recording]];
         const DiagnosisSignals signals = diagnosis_signals(robot, outputs, measured_motion(recording));
         const Index last = signals.regressor.cols() / 10 - 1;
         const MatrixXd torque = at_rows(recording, signals.measured, signals.of_body(last, load.of_body));

@@ -11,7 +11,7 @@ namespace dfdyn::tools {
 
 /// Several recordings of one arm, and what they say together.
 struct SeveralRecordings {
-    std::vector<std::string> names;  ///< file names of all recordings
+    std::vector<std::string> names;  ///< of all recordings: of the file, or its path where names are equal
     std::vector<std::size_t> pooled; ///< of them, those that are in the fit: number of each
     ArmAnswer answer;                ///< its recordings are those of `pooled`
     Eigen::VectorXd torque_gains;    ///< per output: measured unit per N·m (N)
@@ -21,20 +21,14 @@ struct SeveralRecordings {
     bool answered() const { return pooled.size() > 1; }
 };
 
-/// Returns the terms and the payload that these names of effects stand for; `everything` stands for all.
-/// Throws InputError for others.
-Changed parse_changed(const std::vector<std::string>& effects);
-
-/// Returns the names that `parse_changed` accepts.
-std::vector<std::string> changed_names();
-
 /// Fits several recordings at once, each with its own clock, filters and noise. Not answered for fewer than
 /// two recordings and for wrenches. Recordings without a segment that is long enough are left out. Cost: that
 /// of `information_of` per recording and of `ask_recordings`.
 SeveralRecordings fit_recordings(const Robot& robot, const std::vector<Recording>& recordings,
-                                 const DiagnosisOptions& options, const Changed& changed);
+                                 const DiagnosisOptions& options, bool loads_differ);
 
-/// Subtracts from the outputs of each recording what its load adds, so that the rest is the same arm in all.
+/// Subtracts from the outputs of each recording what a load adds that it alone has, so that the rest is the
+/// same arm in all.
 void take_loads_off(std::vector<Recording>& recordings, const Robot& robot, const SeveralRecordings& several,
                     OutputKind outputs);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -95,6 +96,11 @@ double reach_of_95(double deviation, double effect) {
         1.7; // measured ratio of interval widths to their formula: docs/results/diagnosis-panel.md
     constexpr double model_error = 0.04; // relative model error of large effects, measured as well
     return deviations_of_95 * std::hypot(coloured * deviation, model_error * effect);
+}
+
+FoundParameter parameter_within(std::string name, std::string unit, double value, double deviation) {
+    const double reach = deviations_of_95 * deviation;
+    return {std::move(name), std::move(unit), value, value - reach, value + reach};
 }
 
 double deviation_of(const FoundParameter& parameter) {

@@ -15,6 +15,9 @@ std::vector<FoundParameter> found_parameters(const FittedEffects& fitted_effects
 /// noise with the assumed weights) and the difference `effect` from its null value.
 double reach_of_95(double deviation, double effect);
 
+/// Returns a parameter with its 95 % interval, from its standard deviation.
+FoundParameter parameter_within(std::string name, std::string unit, double value, double deviation);
+
 /// Standard deviation that corresponds to a 95 % interval.
 double deviation_of(const FoundParameter& parameter);
 

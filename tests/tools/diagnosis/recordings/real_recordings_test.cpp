@@ -25,8 +25,7 @@ SeveralRecordings answer_of(const std::vector<std::string>& runs) {
     DiagnosisOptions options;
     options.outputs = OutputKind::motor_current;
     options.torque_constants = {8.2, 11.4, 9.4, 7, 11, 1.3}; // N·m/A, estimated from No6
-    return fit_recordings(dfdyn::tests::ur5(), read_recordings(files, columns), options,
-                          parse_changed({"payload"}));
+    return fit_recordings(dfdyn::tests::ur5(), read_recordings(files, columns), options, true);
 }
 
 } // namespace

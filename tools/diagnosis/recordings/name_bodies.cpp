@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/recordings/name_bodies.hpp"
+
+#include "tools/base/text/number.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/verdict/findings.hpp"
+#include "tools/diagnosis/verdict/found_parameters.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Returns the confidence of a load, from its log-evidence. Without a load it was -14 to -7 in thirteen
+/// recordings of a real arm, so that 8, which a load needs at least, is far from chance; half of it is
+/// doubted for effects that no model here has.
+double load_confidence(double margin) {
+    constexpr double highest = 0.95;
+    return std::min(highest, 1 / (1 + std::exp(4 - margin / 2)));
+}
+
+/// Names links and loads.
+class BodyNamer {
+  public:
+    BodyNamer(DiagnosisWork& work, const SeveralRecordings& several, const std::vector<double>& ends_s,
+              const Gains& gains)
+        : work_(work), signals_(*work.signals), several_(several), ends_s_(ends_s), gains_(gains) {}
+
+    /// Names the links that all recordings support, and doubts other errors of links and payloads.
+    void name_links() {
+        const bool load_of_all = std::ranges::any_of(
+            several_.answer.loads, [](const RecordingLoad& load) { return !load.recording; });
+        std::erase_if(findings(), [&](const Finding& one) {
+            return (is_link(one) && supported_link(one.where) != nullptr) || (load_of_all && is_load(one));
+        });
+        for (Finding& one : findings()) {
+            if (is_link(one) || is_load(one)) {
+                one.confidence = std::min(one.confidence, unlikely);
+                one.evidence += " (all recordings together do not support it)";
+            }
+        }
+        for (const ArmHypothesis& link : several_.answer.wrong_links) {
+            add_link(link);
+        }
+    }
+
+    /// Names the loads of single recordings, and with `of_all` that of all.
+    void name_loads(bool of_all) {
+        for (const RecordingLoad& load : several_.answer.loads) {
+            if (load.recording || of_all) {
+                add_load(load);
+            }
+        }
+    }
+
+  private:
+    std::vector<Finding>& findings() { return work_.diagnosis.findings; }
+    const PooledFit& fit() const { return several_.answer.fit; }
+
+    static bool is_link(const Finding& one) { return one.effect == effects::link_inertia_error().name; }
+
+    /// A load that was taken up on the way, with its time as a fifth parameter, was no hypothesis.
+    static bool is_load(const Finding& one) {
+        return one.effect == effects::payload().name && one.parameters.size() <= 4;
+    }
+
+    std::string place(Index body) const {
+        const Index unseen = std::ssize(signals_.robot.joints) - signals_.regressor.cols() / 10;
+        return numbered("link", static_cast<std::size_t>(unseen + body));
+    }
+
+    const ArmHypothesis* supported_link(const std::string& where) const {
+        const auto& links = several_.answer.wrong_links;
+        const auto found = std::ranges::find_if(
+            links, [&](const ArmHypothesis& one) { return place(*one.body) == where && mass_of(one) > 0; });
+        return found == links.end() ? nullptr : &*found;
+    }
+
+    /// Returns the mass of a wrong link.
+    double mass_of(const ArmHypothesis& link) const {
+        return nominal_parameters(signals_.robot, signals_.kind)[10 * *link.body] +
+               fit().value[10 * *link.body];
+    }
+
+    void add_link(const ArmHypothesis& link) {
+        const Index first = 10 * *link.body;
+        const VectorXd nominal = nominal_parameters(signals_.robot, signals_.kind).segment<10>(first);
+        const Eigen::Matrix<double, 10, 1> change = fit().value.segment<10>(first);
+        if (!(mass_of(link) > 0)) {
+            return; // no body has this mass
+        }
+        Finding finding;
+        finding.effect = effects::link_inertia_error().name;
+        finding.where = place(*link.body);
+        add_mass_and_centre(finding, {"delta_mass", "delta_com_x", "delta_com_y", "delta_com_z"}, change,
+                            fit().covariance.block<10, 10>(first, first), nominal);
+        finding.margin_to_nothing = link.margin;
+        finding.confidence = calibrated_confidence(finding, several_.seconds);
+        for (const Index other : link.others) {
+            finding.indistinguishable.push_back({finding.effect, place(other), {}});
+        }
+        push(std::move(finding), signals_.of_body(*link.body, change));
+    }
+
+    void add_load(const RecordingLoad& load) {
+        const Index last = signals_.regressor.cols() / 10 - 1;
+        Finding finding;
+        finding.effect = effects::payload().name;
+        finding.where = "tool";
+        add_mass_and_centre(finding, {"mass", "com_x", "com_y", "com_z"}, load.parameters, load.covariance,
+                            VectorXd::Zero(10));
+        finding.margin_to_nothing = load.margin;
+        finding.confidence = load_confidence(load.margin);
+        VectorXd there = VectorXd::Ones(signals_.rows());
+        if (load.recording) {
+            const std::size_t number = several_.pooled[*load.recording];
+            finding.only_in = several_.names[number];
+            finding.detail = "only in " + finding.only_in;
+            there = rows_of(number);
+            work_.diagnosis.suspicions.push_back({load_remark(finding)});
+        }
+        push(std::move(finding), there.asDiagonal() * signals_.of_body(last, load.of_body));
+    }
+
+    /// Returns 1 for the rows of a recording, 0 for the others.
+    VectorXd rows_of(std::size_t number) const {
+        const double start_s = number == 0 ? -std::numeric_limits<double>::infinity() : ends_s_[number - 1];
+        const Eigen::ArrayXd time = signals_.measured.time_s.array();
+        return (time > start_s && time <= ends_s_[number] + 1e-6).cast<double>();
+    }
+
+    static std::string load_remark(const Finding& load) {
+        return "a load of " + number_text(load.parameters.front().value) +
+               " kg, fitted to the whole recording, is subtracted from the outputs of " + load.only_in +
+               ": errors, also those on held-out time, curves and the extended model are without it";
+    }
+
+    /// Adds mass and centre of mass of a body that changes by `change`, as differences from `nominal`.
+    static void add_mass_and_centre(Finding& finding, const std::array<const char*, 4>& names,
+                                    const Eigen::Matrix<double, 10, 1>& change,
+                                    const Eigen::Matrix<double, 10, 10>& covariance,
+                                    const VectorXd& nominal) {
+        const double mass = nominal[0] + change[0];
+        finding.parameters = {parameter_within(names[0], "kg", change[0], std::sqrt(covariance(0, 0)))};
+        for (Index axis = 1; axis <= 3; ++axis) {
+            const double centre = (nominal[axis] + change[axis]) / mass;
+            const double before = nominal[0] > 0 ? nominal[axis] / nominal[0] : 0;
+            Eigen::Vector2d slope(-centre / mass, 1 / mass); // by mass and first moment
+            const std::array<Index, 2> both{0, axis};
+            const double variance = slope.dot(covariance(both, both) * slope);
+            finding.parameters.push_back(parameter_within(names[static_cast<std::size_t>(axis)], "m",
+                                                          centre - before,
+                                                          std::sqrt(std::max(0.0, variance))));
+        }
+    }
+
+    void push(Finding finding, const MatrixXd& share) {
+        finding.margin_to_others = std::numeric_limits<double>::infinity();
+        finding.confirm = confirmation(finding);
+        gains_.tell(finding, share);
+        findings().push_back(std::move(finding));
+    }
+
+    DiagnosisWork& work_;
+    const DiagnosisSignals& signals_;
+    const SeveralRecordings& several_;
+    const std::vector<double>& ends_s_;
+    const Gains& gains_;
+};
+
+} // namespace
+
+void name_bodies(DiagnosisWork& work, const SeveralRecordings& several, const std::vector<double>& ends_s,
+                 const Gains& gains, bool fitted_everywhere) {
+    BodyNamer namer(work, several, ends_s, gains);
+    if (fitted_everywhere) {
+        namer.name_links();
+    }
+    namer.name_loads(fitted_everywhere);
+}
+
+} // namespace dfdyn::tools
