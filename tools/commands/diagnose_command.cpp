@@ -38,7 +38,7 @@ struct DiagnoseOptions {
     std::filesystem::path folder;
     std::filesystem::path header;
     std::vector<std::string> formats; ///< names of robot_formats()
-    std::vector<std::string> changed; ///< "payload" or nothing
+    std::vector<std::string> changed; ///< the name of the payload, or nothing
     bool quick = false;
     bool no_setup_check = false;
     bool json = false;
@@ -238,7 +238,7 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
             "What differs between several recordings: the load at the tip, which gets a value in each "
             "that has one")
         ->check(one_of({effects::payload().name}))
-        ->type_name("payload");
+        ->type_name(effects::payload().name);
     add_result_options(*command, *options);
     command->add_flag("--no-held-out", options->quick,
                       "Leave out the error on held-out time, which takes half of the run");
