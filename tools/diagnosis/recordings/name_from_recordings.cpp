@@ -117,9 +117,10 @@ class TermNamer {
         finding.parameters = {
             parameter_within(kind.name, kind.unit, value, std::hypot(deviation, finding.spread))};
         finding.confidence = probability_of_size(value, std::hypot(deviation, finding.spread));
-        if (!effect.friction && std::abs(value) < clear * deviation) {
+        const bool may_be_none = finding.parameters.front().low < 0 && finding.parameters.front().high > 0;
+        if (may_be_none || (!effect.friction && std::abs(value) < clear * deviation)) {
             finding.confidence = std::min(finding.confidence, unlikely);
-            if (everywhere_ && std::abs(value) < std::hypot(deviation, finding.spread)) {
+            if (!effect.friction && everywhere_ && std::abs(value) < std::hypot(deviation, finding.spread)) {
                 return; // noise
             }
         }
