@@ -163,17 +163,34 @@ TEST_CASE("one recording and wrenches have no answer") {
     CHECK_FALSE(fit_recordings(robot, {one, one}, wrench, false).answered());
 }
 
-TEST_CASE("the same recording twice gives the same values") {
+/// The recording with dry friction added: `part` of what each joint of the scenario has.
+Recording with_more_dry_friction(Recording recording, double part) {
+    const std::vector<double> position = recording.position.values;
+    for (std::size_t value = 6; value < position.size(); ++value) {
+        const double dry = value % 6 < 3 ? 8 : 2;
+        recording.output.values[value] += std::copysign(part * dry, position[value] - position[value - 6]);
+    }
+    return recording;
+}
+
+TEST_CASE("the same recording twice has no differences, and another friction is one") {
+    INFO("DFDYN_TEST_SEED=" << seed());
+    constexpr double expected_spread = 0.05; // of dry friction, without recordings that show it
+    constexpr double more = 0.3;
     const Robot robot = ur5();
     const Recording one = recording_of(robot, scenario_of(robot, 0), "one.csv");
     const PooledFit twice = answer_of(robot, {one, one}, false).answer.fit;
-    for (Index k = 0; k < twice.value.size(); ++k) {
-        CHECK(twice.difference[0][k] == Approx(twice.difference[1][k]).margin(1e-9));
-    }
+    const PooledFit apart = answer_of(robot, {one, with_more_dry_friction(one, more)}, false).answer.fit;
     for (Index joint = 0; joint < 6; ++joint) {
+        CAPTURE(joint);
         const Index dry = 60 + terms_of_joint * joint + 3;
-        CHECK(twice.value[dry] == Approx(joint < 3 ? 8 : 2).epsilon(0.25));
-        CHECK(twice.spread[dry] > 0.01 * twice.value[dry]); // hardly known from two
+        const double truth = joint < 3 ? 8 : 2;
+        CHECK(twice.value[dry] == Approx(truth).epsilon(0.25));
+        CHECK(std::abs(twice.difference[0][dry]) < 1e-3 * truth);
+        CHECK(twice.spread[dry] < 0.7 * expected_spread * truth);
+        CHECK(apart.spread[dry] > 1.5 * expected_spread * truth);
+        const double found = apart.difference[1][dry] - apart.difference[0][dry];
+        CHECK(found == Approx(more * truth).epsilon(0.3));
     }
 }
 
