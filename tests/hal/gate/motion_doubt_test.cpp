@@ -128,4 +128,107 @@ TEST_CASE("readings that have jumped far away stay refused until a jump takes th
     }
 }
 
+TEST_CASE("a reading of unknown time at the zero loses no joint that motion leads there") {
+    Joint joint;
+    const auto truth = [](int tick) { return 1 + 2e-3 * (tick - 350) + 1e-3; };
+    Reason last = Reason::position_lost;
+    for (int tick = 0; tick < 400; ++tick) {
+        if (tick == 100 || tick == 350) { // a SYNC is lost
+            joint.glance(tick, truth(tick));
+        } else {
+            last = joint.take(tick, truth(tick));
+        }
+    }
+    CHECK(last == Reason::ok);
+}
+
+TEST_CASE("a zero of unknown time proves nothing against readings that are trusted after it") {
+    Joint joint;
+    const auto truth = [](int tick) { return 0.6 + 2e-3 * (tick - 100); };
+    Reason last = Reason::position_lost;
+    for (int tick = 0; tick < 400; ++tick) {
+        if (tick == 100 || tick == 280) {
+            joint.glance(tick, tick == 100 ? 1 : truth(tick));
+        } else {
+            last = joint.take(tick, truth(tick));
+        }
+    }
+    CHECK(last == Reason::ok);
+}
+
+TEST_CASE("a joint that comes to its zero while a few readings are missing is not lost") {
+    const auto truth = [](int tick) { return 1 + 2e-3 * (tick - 200) + 1e-3; };
+    for (const int lost : {3, 4, 5, 7}) {
+        for (const int silence : {0, 20, 100}) { // readings before the lost ones are of unknown time
+            for (const bool interrupted : {false, true}) {
+                CAPTURE(lost, silence, interrupted);
+                Joint joint;
+                Reason last = Reason::position_lost;
+                for (int tick = 0; tick < 400; ++tick) {
+                    if (tick < 200 && tick >= 200 - lost) {
+                        continue;
+                    }
+                    const bool before = tick < 200 && tick >= 200 - lost - silence;
+                    const bool after = tick >= 200 && tick <= 200 + silence;
+                    if (after || (before && !interrupted)) {
+                        joint.glance(tick, truth(tick));
+                    } else if (before) {
+                        joint.gate.interrupt(joint.reading(tick * period, truth(tick)));
+                    } else {
+                        last = joint.take(tick, truth(tick));
+                    }
+                }
+                CHECK(last == Reason::ok);
+            }
+        }
+    }
+}
+
+TEST_CASE("motion in readings of unknown time makes no joint suspect that is trusted afterwards") {
+    Joint joint;
+    Reason last = Reason::position_lost;
+    for (int tick = 0; tick < 800; ++tick) {
+        const double to_stop = 1 - std::min(tick, 200) / 200.0;
+        const double position_rad = tick < 500 ? 0.4 - 0.1 * to_stop * to_stop : 0.404;
+        if (tick == 100 || tick == 101) {
+            joint.glance(tick, position_rad);
+        } else if (tick < 450 || tick >= 500) { // at rest, silent, and at rest close by
+            last = joint.take(tick, position_rad);
+        }
+    }
+    CHECK(last == Reason::ok);
+}
+
+TEST_CASE("a joint whose readings return after a flipped bit and a gap is trusted again") {
+    constexpr std::int64_t ms = 1'000'000;
+    for (const double speed : {0.0, 1.0, 3.0, -3.0}) { // rad/s
+        for (const int slew : {0, 8, 16}) {            // readings on the way back
+            CAPTURE(speed, slew);
+            Joint joint;
+            joint.gate = MotionGate({.limits = {},
+                                     .range = {-3, 3},
+                                     .max_age_ns = 12 * ms,
+                                     .period_ns = ms,
+                                     .jitter_ns = 250 * us,
+                                     .qualification = {.readings = 10, .zero_readings = 1000}});
+            int trusted = 0;
+            for (int tick = 0; tick < 1000; ++tick) {
+                const int since = tick - 300;
+                const double off_rad = since < 0      ? 0
+                                       : since == 0   ? 0.12
+                                       : since < slew ? 0.12 * (slew - since) / slew
+                                                      : 0;
+                if (slew == 0 && since > 0 && since <= 11) {
+                    continue;
+                }
+                const double position_rad = 0.1 + 1e-3 * speed * (tick - 300) + off_rad;
+                const bool ok = joint.gate.take(joint.reading(tick * ms, position_rad)).reason == Reason::ok;
+                trusted += ok && tick >= 600 ? 1 : 0;
+                CHECK_FALSE((ok && off_rad > 0.02));
+            }
+            CHECK(trusted == 400);
+        }
+    }
+}
+
 } // namespace motion_doubt_test

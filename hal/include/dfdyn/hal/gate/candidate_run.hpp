@@ -72,7 +72,7 @@ class CandidateRun {
 
   private:
     static constexpr int min_other_readings = 2; ///< of the other run before the one that replaces the run
-    static constexpr int min_run_readings = 2;   ///< of a run that its successor contradicts
+    static constexpr int min_run_readings = 2;   ///< of a run that its successor contradicts: one may be off
 
     /// Returns true if no motion leads from the run before to this one.
     [[nodiscard]] constexpr bool jumps(const RunComparison& comparison,

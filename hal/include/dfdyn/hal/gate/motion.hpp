@@ -57,7 +57,7 @@ class MotionGate : private MotionEvidence {
     /// Takes a reading; stamps must increase.
     constexpr Verdict take(const EncoderReading& reading) noexcept {
         const bool expected = is_expected(reading);
-        look(reading);
+        follow_away(reading);
         const Verdict verdict = judge(reading);
         EncoderReading unwrapped = reading;
         unwrapped.position_rad = verdict.position_rad;
@@ -75,17 +75,16 @@ class MotionGate : private MotionEvidence {
     /// zero, far from where the joint was, or after a silence.
     constexpr void glance(EncoderReading reading) noexcept {
         unwrap_near(reading, trusted_.last().position_rad);
-        const EncoderReading before = unfit_.value_or(trusted_.last());
-        candidate_.contradict(contradicts_unfit(reading));
-        const bool returns = away_.silent_until(reading.stamp_ns);
-        look(reading);
-        if (returns || is_far(before, reading)) {
+        candidate_.contradict(unfit_.contradict(reading));
+        const bool expected = is_expected(reading) || unfit_.lead_to(reading);
+        const bool returns = away_.silent_s(reading.stamp_ns) >= fastest_boot_s();
+        follow_away(reading);
+        if (!expected && (returns || unfit_.is_far(unfit_.last_or(trusted_.last()), reading))) {
             counts_from_zero_ = !trusted_.empty() && !stood_at(reading) &&
                                 begins_at_zero(reading, trusted_.end_line(0, config_.period_ns));
         }
         zero_lost_ = zero_lost_ || (counts_from_zero_ && !reading.zero);
-        moved_meanwhile_ = moved_meanwhile_ || moves_from_unfit(reading);
-        unfit_ = reading;
+        unfit_.take_untimed(reading);
     }
 
     /// The readings contradict each other: more of them are needed.
@@ -96,9 +95,9 @@ class MotionGate : private MotionEvidence {
         restarts_ += !trusted_.empty() && !interrupted_ ? 1U : 0U;
         interrupted_ = true;
         candidate_.interrupt();
-        candidate_.contradict(unfit_ && comparison_.near(unfit_->stamp_ns, reading.stamp_ns) &&
-                              !tolerance_.reaches(*unfit_, reading));
-        unfit_ = reading;
+        candidate_.contradict(unfit_.contradict(reading));
+        unfit_.take(reading);
+        away_.hear(reading.stamp_ns);
         zero_.take(reading, is_expected(reading));
     }
 
@@ -140,10 +139,11 @@ class MotionGate : private MotionEvidence {
 
   private:
     /// Follows where the readings are.
-    constexpr void look(EncoderReading reading) noexcept {
+    constexpr void follow_away(EncoderReading reading) noexcept {
         if (!trusted_.empty() && unwrap(reading)) {
             away_.take(reading);
         }
+        away_.hear(reading.stamp_ns);
     }
 
     /// Gives the joint up where many readings count from the zero, whatever came in between.
@@ -177,7 +177,7 @@ class MotionGate : private MotionEvidence {
         }
         if (fresh(reading.stamp_ns)) {
             if (leads_from_trusted(reading)) {
-                note(candidate_.disputes(reading, comparison_));
+                note(candidate_.disputes(reading, comparison_)); // either may be the wrong one
                 candidate_.clear();
                 return trust(reading);
             }
@@ -232,6 +232,7 @@ class MotionGate : private MotionEvidence {
     constexpr Verdict trust(const EncoderReading& reading) noexcept {
         trusted_.extend(reading, tolerance_);
         end_loss();
+        forget_unfit();
         disturbed_ = false;
         return settled(reading);
     }
@@ -248,9 +249,7 @@ class MotionGate : private MotionEvidence {
     constexpr void believe(const MotionRun& run) noexcept {
         replace_trusted(run);
         candidate_.clear();
-        unfit_.reset();
-        counts_from_zero_ = false;
-        moved_meanwhile_ = false;
+        forget_unfit();
         end_loss();
         interrupted_ = false;
         disturbed_ = false;
@@ -264,7 +263,7 @@ class MotionGate : private MotionEvidence {
         if (broke_off_at_zero(reading)) {
             return lose(reading);
         }
-        candidate_.contradict(contradicts_unfit(reading));
+        candidate_.contradict(unfit_.contradict(reading));
         const CandidateRun::Step step = candidate_.take(reading, comparison_, tolerance_);
         note(step != CandidateRun::Step::continues);
         if (step == CandidateRun::Step::is_off) {

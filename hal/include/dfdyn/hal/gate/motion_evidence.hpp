@@ -5,12 +5,12 @@
 #include "dfdyn/hal/gate/candidate_run.hpp"
 #include "dfdyn/hal/gate/range.hpp"
 #include "dfdyn/hal/gate/startup.hpp"
+#include "dfdyn/hal/gate/unfit_readings.hpp"
 #include "dfdyn/hal/gate/zero_watch.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 namespace dfdyn::hal {
@@ -36,7 +36,8 @@ class MotionEvidence {
         : config_(config), tolerance_{config.limits, config.period_ns, seconds_between(0, config.jitter_ns)},
           comparison_(tolerance_, config.max_age_ns, config.jitter_ns),
           zero_(tolerance_, config.max_age_ns + 2 * config.jitter_ns),
-          away_(tolerance_, config.max_age_ns + 2 * config.jitter_ns) {}
+          away_(tolerance_, config.max_age_ns + 2 * config.jitter_ns),
+          unfit_(tolerance_, config.max_age_ns, config.jitter_ns) {}
 
     static constexpr int times_when_lost = 20; ///< as many readings are needed after a contradiction
     static constexpr std::int64_t longest_trial_ns = 400'000'000; ///< until trusted readings are established
@@ -150,27 +151,14 @@ class MotionEvidence {
     /// Returns whether a run that begins with this reading may be of a frozen encoder.
     [[nodiscard]] constexpr bool may_be_frozen(const EncoderReading& first) const noexcept {
         const bool recent = comparison_.near(trusted_.last().stamp_ns, first.stamp_ns);
-        return !trusted_.empty() && (recent || moved_meanwhile_ || trusted_.moves(tolerance_)) &&
+        return !trusted_.empty() && (recent || unfit_.moved() || trusted_.moves(tolerance_)) &&
                (!stood_at(first) || trusted_.repeats(first, tolerance_));
     }
 
-    /// Returns whether no motion leads to this reading from the last one of unknown time, shortly before.
-    [[nodiscard]] constexpr bool contradicts_unfit(const EncoderReading& reading) const noexcept {
-        return unfit_ && comparison_.near(unfit_->stamp_ns, reading.stamp_ns) && is_far(*unfit_, reading);
-    }
-
-    /// Returns whether a joint cannot move from one reading to the other, whose time is known to a period.
-    [[nodiscard]] constexpr bool is_far(const EncoderReading& from, const EncoderReading& to) const noexcept {
-        const std::int64_t since_ns =
-            std::clamp(to.stamp_ns - from.stamp_ns, std::int64_t{0}, config_.max_age_ns);
-        return magnitude(to.position_rad - from.position_rad) >
-               tolerance_.reach(seconds_between(0, since_ns + config_.period_ns), to.step_rad);
-    }
-
-    /// Returns whether this reading of unknown time shows motion since the last one.
-    [[nodiscard]] constexpr bool moves_from_unfit(const EncoderReading& reading) const noexcept {
-        return unfit_ && comparison_.near(unfit_->stamp_ns, reading.stamp_ns) &&
-               magnitude(reading.position_rad - unfit_->position_rad) > 2 * reading.step_rad;
+    /// Forgets the readings that were of no use: the motion of the joint leads past them.
+    constexpr void forget_unfit() noexcept {
+        unfit_.clear();
+        counts_from_zero_ = false;
     }
 
     /// Returns whether the joint was at rest at the last trusted reading, and is still there.
@@ -304,42 +292,45 @@ class MotionEvidence {
                               hidden ? clock_s : 0);
     }
 
+    /// Shortest silence of a board that was switched on.
+    [[nodiscard]] constexpr double fastest_boot_s() const noexcept {
+        return std::max(0.01, 2 * seconds_between(0, config_.period_ns));
+    }
+
     /// Returns whether a run after a silence begins at the device's zero; a joint that stood there before may
     /// stand there still.
     [[nodiscard]] constexpr bool restarted_at_zero(const MotionRun& run) const noexcept {
-        const double fastest_boot_s = std::max(0.01, 2 * seconds_between(0, config_.period_ns));
-        const bool long_enough =
-            !time_known_ || seconds_between(trusted_.last().stamp_ns, run.first().stamp_ns) >= fastest_boot_s;
+        const bool long_enough = !time_known_ || seconds_between(trusted_.last().stamp_ns,
+                                                                 run.first().stamp_ns) >= fastest_boot_s();
         return long_enough && begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
                !stood_at(run.first()) && !reverses_jump_before(run);
     }
 
     // What MotionGate changes: NOLINTBEGIN(*-non-private-member-variables-in-classes)
-    Config config_;                       ///< of the joint
-    MotionTolerance tolerance_;           ///< of readings
-    RunComparison comparison_;            ///< of runs
-    ZeroWatch zero_;                      ///< readings that count from the zero
-    AwayWatch away_;                      ///< readings that jumped away from the joint
-    MotionRun trusted_;                   ///< the positions of the joint
-    MotionRun established_;               ///< trusted before them, and for longer
-    std::int64_t trial_end_ns_ = 0;       ///< from here on `trusted_` counts alone
-    std::int64_t jump_ns_ = 0;            ///< when the last run began that is not trusted
-    double jump_rad_ = 0;                 ///< from the readings before it; 0: after a silence
-    double jump_before_rad_ = 0;          ///< of the run before
-    std::int64_t jump_before_ns_ = 0;     ///< when that run began
-    double jump_error_rad_ = 0;           ///< largest error of `jump_rad_`
-    std::optional<EncoderReading> unfit_; ///< the last reading of a device that was not itself
-    bool counts_from_zero_ = false;       ///< readings of unknown time began at the zero, far from the joint
-    bool moved_meanwhile_ = false;        ///< readings of unknown time differed from each other
-    CandidateRun candidate_;              ///< of readings that qualify
-    MotionRun refused_;                   ///< does not connect; while its readings go on they are refused
-    bool expected_ = false;               ///< a run that was seen shortly before led to the begin of the run
-    bool suspected_ = false;              ///< the run may be of a frozen encoder
-    bool disturbed_ = false;              ///< a jump has come since the last trusted reading
-    bool interrupted_ = false;            ///< the device was not itself since the last trusted reading
-    bool time_known_ = true;              ///< since the last trusted reading
-    bool refused_time_known_ = true;      ///< since the last refused reading
-    bool zero_lost_ = false;              ///< the refused readings began at the device's zero
+    Config config_;                   ///< of the joint
+    MotionTolerance tolerance_;       ///< of readings
+    RunComparison comparison_;        ///< of runs
+    ZeroWatch zero_;                  ///< readings that count from the zero
+    AwayWatch away_;                  ///< readings that jumped away from the joint
+    MotionRun trusted_;               ///< the positions of the joint
+    MotionRun established_;           ///< trusted before them, and for longer
+    std::int64_t trial_end_ns_ = 0;   ///< from here on `trusted_` counts alone
+    std::int64_t jump_ns_ = 0;        ///< when the last run began that is not trusted
+    double jump_rad_ = 0;             ///< from the readings before it; 0: after a silence
+    double jump_before_rad_ = 0;      ///< of the run before
+    std::int64_t jump_before_ns_ = 0; ///< when that run began
+    double jump_error_rad_ = 0;       ///< largest error of `jump_rad_`
+    UnfitReadings unfit_;             ///< since the last trusted one
+    bool counts_from_zero_ = false;   ///< readings of unknown time began at the zero, far from the joint
+    CandidateRun candidate_;          ///< of readings that qualify
+    MotionRun refused_;               ///< does not connect; while its readings go on they are refused
+    bool expected_ = false;           ///< a run that was seen shortly before led to the begin of the run
+    bool suspected_ = false;          ///< the run may be of a frozen encoder
+    bool disturbed_ = false;          ///< a jump has come since the last trusted reading
+    bool interrupted_ = false;        ///< the device was not itself since the last trusted reading
+    bool time_known_ = true;          ///< since the last trusted reading
+    bool refused_time_known_ = true;  ///< since the last refused reading
+    bool zero_lost_ = false;          ///< the refused readings began at the device's zero
     // NOLINTEND(*-non-private-member-variables-in-classes)
 };
 

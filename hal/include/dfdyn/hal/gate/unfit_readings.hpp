@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/gate/motion_run.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+namespace dfdyn::hal {
+
+/// Readings since the last trusted one that are of no use as positions: their time is known to a period only,
+/// or the device was not itself. They still show what the encoder does. O(1).
+class UnfitReadings {
+  public:
+    /// `max_age_ns`: how far apart consecutive readings may be; `jitter_ns`: largest lateness of a stamp.
+    constexpr UnfitReadings(const MotionTolerance& tolerance, std::int64_t max_age_ns,
+                            std::int64_t jitter_ns) noexcept
+        : tolerance_(tolerance), max_age_ns_(max_age_ns), jitter_ns_(jitter_ns) {}
+
+    /// Takes a reading of a device that was not itself.
+    constexpr void take(const EncoderReading& reading) noexcept { last_ = reading; }
+
+    /// Takes a reading of unknown time.
+    constexpr void take_untimed(const EncoderReading& reading) noexcept {
+        moved_ = moved_ || (is_recent(reading, max_age_ns_ + 2 * jitter_ns_) &&
+                            magnitude(reading.position_rad - last_->position_rad) > 2 * reading.step_rad);
+        last_ = reading;
+    }
+
+    /// Forgets them: the joint is trusted.
+    constexpr void clear() noexcept {
+        last_.reset();
+        moved_ = false;
+    }
+
+    /// Returns the last of them; `other` if there is none.
+    [[nodiscard]] constexpr const EncoderReading& last_or(const EncoderReading& other) const noexcept {
+        return last_ ? *last_ : other;
+    }
+
+    /// Returns whether those of unknown time differed from each other.
+    [[nodiscard]] constexpr bool moved() const noexcept { return moved_; }
+
+    /// Returns whether no motion leads to this reading from the last of them, shortly before.
+    [[nodiscard]] constexpr bool contradict(const EncoderReading& reading) const noexcept {
+        return is_recent(reading, max_age_ns_ + 2 * jitter_ns_) && is_far(*last_, reading);
+    }
+
+    /// Returns whether the joint can have moved to this reading from the last of them, in a short silence.
+    [[nodiscard]] constexpr bool lead_to(const EncoderReading& reading) const noexcept {
+        return is_recent(reading, 3 * max_age_ns_) && !is_far(*last_, reading);
+    }
+
+    /// Returns whether a joint cannot move from one reading to the other, whose time is known to a period.
+    [[nodiscard]] constexpr bool is_far(const EncoderReading& from, const EncoderReading& to) const noexcept {
+        const std::int64_t since_ns = std::clamp(to.stamp_ns - from.stamp_ns, std::int64_t{0}, max_age_ns_);
+        return magnitude(to.position_rad - from.position_rad) >
+               tolerance_.reach(seconds_between(0, since_ns + tolerance_.period_ns), to.step_rad);
+    }
+
+  private:
+    [[nodiscard]] constexpr bool is_recent(const EncoderReading& reading,
+                                           std::int64_t most_ns) const noexcept {
+        return last_ && reading.stamp_ns - last_->stamp_ns <= most_ns;
+    }
+
+    MotionTolerance tolerance_;
+    std::int64_t max_age_ns_;
+    std::int64_t jitter_ns_;
+    std::optional<EncoderReading> last_;
+    bool moved_ = false; ///< those of unknown time
+};
+
+} // namespace dfdyn::hal
