@@ -72,4 +72,28 @@ TEST_CASE("zeros freeze as any other value does") {
     CHECK(gate.frozen({0, 0, 0}));
 }
 
+TEST_CASE("a live coarse sensor that returns to the values at which it was frozen is good after a while") {
+    for (const int pause : {3, 4}) { // other values between them
+        for (const int times : {1, 2}) {
+            CAPTURE(pause, times);
+            Gate gate(4);
+            const Gate::Raw values{7, -3, 0};
+            for (int reading = 1; reading <= 4; ++reading) {
+                gate.frozen(values);
+            }
+            int refused = 0;
+            for (int round = 0; round < 100; ++round) {
+                for (int other = 1; other <= pause; ++other) {
+                    CHECK_FALSE(gate.frozen({7, -3, other}));
+                }
+                for (int time = 0; time < times; ++time) {
+                    refused += gate.frozen(values) ? 1 : 0;
+                }
+            }
+            CHECK(refused <= 6);
+            CHECK(gate.count() == 1);
+        }
+    }
+}
+
 } // namespace frozen_test
