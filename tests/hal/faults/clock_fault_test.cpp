@@ -48,20 +48,32 @@ class StampedBench {
         frames.resize(count);
         for (hal::Frame& frame : frames) {
             frame.stamp_ns += by_ns;
+            frame.stamp_source = hal::StampSource::hardware;
             take(frame);
         }
+    }
+    /// An error frame, or one of this program, that the operating system has stamped.
+    void send_by_host_clock(std::int64_t by_ns, bool error) {
+        hal::Frame frame = frame_of(error ? 0x4 : 0x7F0, {0, 0, 0, 0, 0, 0, 0, 0}, 0);
+        frame.error = error;
+        frame.origin = error ? hal::Origin::remote : hal::Origin::this_socket;
+        frame.stamp_source = hal::StampSource::kernel;
+        frame.stamp_ns = ArmOnBus::time_ns(arm_.number) + by_ns;
+        take(frame);
     }
     void send_bus_off(std::int64_t by_ns) {
         hal::Frame frame;
         frame.error = true;
         frame.id = 0x40;
         frame.length = 8;
+        frame.stamp_source = hal::StampSource::hardware;
         frame.stamp_ns = ArmOnBus::time_ns(arm_.number) + by_ns;
         take(frame);
     }
     void be_silent(int ticks) { arm_.number += ticks; }
 
     int valid = 0; ///< samples
+    [[nodiscard]] std::uint64_t adopted() const { return arm_.assembly.bus().clock.adopted(); }
 
   private:
     void take(const hal::Frame& frame) {
@@ -143,5 +155,28 @@ TEST_CASE("faults 22, 25 and 23: samples go on after a bus-off while the clock w
         }
         CAPTURE(before);
         CHECK(bench.valid >= valid_before + 99);
+    }
+}
+
+TEST_CASE("error frames and own frames with stamps of another clock do not set the devices' clock") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const bool error : {true, false}) {
+        for (const std::int64_t by_ns : {-3000 * ms, -20 * ms, 20 * ms, 3000 * ms}) {
+            CAPTURE(error, by_ns);
+            StampedBench bench(engine);
+            for (int tick = 0; tick < 100; ++tick) {
+                bench.send(0);
+            }
+            for (int frame = 0; frame < 60; ++frame) {
+                bench.send_by_host_clock(by_ns, error);
+            }
+            const int valid_before = bench.valid;
+            for (int tick = 0; tick < 100; ++tick) {
+                bench.send(0);
+                bench.send_by_host_clock(by_ns, error);
+            }
+            CHECK(bench.adopted() == 0);
+            CHECK(bench.valid >= valid_before + 99);
+        }
     }
 }

@@ -64,7 +64,8 @@ class SampleAssembly {
     /// Accepts a frame, read at `now_ns`. Returns the instant that it completes, if any.
     constexpr SampleTrigger take(const Frame& frame, std::int64_t now_ns) noexcept {
         const std::uint64_t clocks = watch_.clock.adopted();
-        const auto stamp_ns = watch_.clock.accept(frame.stamp_ns, now_ns); // every frame shows the clock
+        const auto stamp_ns = watch_.witness.shows_clock(frame) ? watch_.clock.accept(frame.stamp_ns, now_ns)
+                                                                : std::optional<std::int64_t>();
         if (watch_.clock.adopted() != clocks) {
             position_.clock_set();
         }

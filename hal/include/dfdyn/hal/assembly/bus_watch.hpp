@@ -3,6 +3,7 @@
 
 #include "dfdyn/hal/gate/bus_health.hpp"
 #include "dfdyn/hal/gate/clock.hpp"
+#include "dfdyn/hal/gate/clock_witness.hpp"
 #include "dfdyn/hal/gate/unexpected_frames.hpp"
 
 namespace dfdyn::hal {
@@ -12,6 +13,7 @@ struct BusWatch {
     explicit constexpr BusWatch(const ClockGate::Config& config) noexcept : clock(config) {}
 
     ClockGate clock;
+    ClockWitness witness; ///< of that clock
     BusHealth health;
     UnexpectedFrames unknown;  ///< on identifiers of no known device
     UnexpectedFrames rejected; ///< on known identifiers, but of another form

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/bus.hpp"
+#include "dfdyn/hal/gate/clock_witness.hpp"
 #include "dfdyn/hal/log_clock.hpp"
 
 #include <algorithm>
@@ -24,6 +25,7 @@ struct SamplerConfig {
 /// so that the same frames with the same stamps give the same samples, bit for bit, from a bus and from a
 /// recording.
 ///
+/// A frame that does not show the clock (ClockWitness) goes through at the time of the one before.
 /// A frame whose stamp is ahead is held until the next: where time did not go on from it, it is left out.
 /// A sample with a value that is missing waits for the next value, from which it is interpolated, or until it
 /// cannot come any more; those after it wait with it, at most `capacity` of them. Where no moment comes,
@@ -44,6 +46,11 @@ class Sampler {
     template <class OnSample>
     void take(Arm& arm, const Frame& frame, BusState state, const BusCounters& counters,
               OnSample&& on_sample) {
+        if (!witness_.shows_clock(frame)) {
+            arm.update(state, counters);
+            arm.take(frame, now_ns_);
+            return;
+        }
         if (!started_) {
             start(frame.stamp_ns);
         }
@@ -172,6 +179,7 @@ class Sampler {
     }
 
     SamplerConfig config_;
+    ClockWitness witness_;
     LogClock clock_;
     bool started_ = false;
     std::int64_t start_ns_ = 0;
