@@ -33,6 +33,8 @@ namespace dfdyn::hal {
 /// - A position that has been trusted again for a shorter time than the silence or the jump before it lasted
 ///   (at most 0.4 s) may be the wrong one. A run is as good that connects with what was trusted before and
 ///   begins with a jump that takes back most of the way from there.
+/// - Readings that jumped away from a joint that was trusted, five times as far as it can have moved, are
+///   refused until they come back, jump further, or fall silent for so long that it can be there (AwayWatch).
 /// - A run at the device's zero that takes back the jump before it is of a bit that was stuck, not of a
 ///   restart.
 /// - A moving joint that repeats its last reading, bit for bit, where it cannot have stopped, is frozen until
