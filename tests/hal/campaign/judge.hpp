@@ -54,12 +54,11 @@ class Judge {
         if (is_near(truth, claim, 0, 0, tolerance)) {
             return Match::right;
         }
-        if (after_silence(joint, true_ns) || after_silence(joint, true_ns - bus_max_age)) {
-            return Match::undecidable;
-        }
         const double waits_s = sum(true_ns, [](const Fault& fault) { return fault.waits_s; });
         const double waited_s = arm_.synchronous ? 0 : waits_s;
-        return is_near(truth, claim, waited_s, 0, tolerance + within_limits(joint, claim))
+        const auto may_be = [&](const JointSight::Shown& shown) { return after_silence(joint, shown); };
+        const bool shown = is_shown(joint, &JointSight::Shown::position_rad, claim, tolerance, may_be);
+        return shown || is_near(truth, claim, waited_s, 0, tolerance + within_limits(joint, claim))
                    ? Match::undecidable
                    : Match::wrong;
     }
@@ -89,8 +88,9 @@ class Judge {
             });
         const double unseen = corrupted ? below_jumps() : 0;
         const bool near = is_near(truth, claim, waited_s + late_s, early_s, tolerance + unseen);
-        return near || (arm_.efforts() && of_undecidable_joint(channel, claim, true_ns)) ? Match::undecidable
-                                                                                         : Match::wrong;
+        return near || (arm_.efforts() && of_undecidable_joint(channel, claim, tolerance))
+                   ? Match::undecidable
+                   : Match::wrong;
     }
 
   private:
@@ -144,19 +144,30 @@ class Judge {
                                std::clamp(blind.blind_ns, bus_period, bus_max_age), blind.span_ns);
     }
 
-    /// Whether a position is of a run that begins after more than `max_age` without a right reading, where
-    /// the limits allow the joint to be by then, and not at the device's zero. Such a run goes on as a joint
-    /// does that went there meanwhile, however far off it is later.
-    [[nodiscard]] bool after_silence(std::size_t joint, std::int64_t true_ns) const {
-        const JointSight::Run& run = sight_[joint].run_at(true_ns);
+    /// Whether a reading is of a run that begins after more than `max_age` without a right reading, where the
+    /// limits allow the joint to be by then, and not at the device's zero. Such a run goes on as a joint does
+    /// that went there meanwhile, however far off it is later.
+    [[nodiscard]] bool after_silence(std::size_t joint, const JointSight::Shown& shown) const {
+        const JointSight::Run& run = sight_[joint].run(shown.run);
         const double reach = reach_rad(joint, run.velocity, run.blind_ns, 3 * bus_period);
         return run.blind_ns > bus_max_age && !run.at_zero && std::abs(run.error_rad) <= reach;
     }
 
-    /// Whether an effort comes in frames with a position that is undecidable.
-    [[nodiscard]] bool of_undecidable_joint(std::size_t joint, const Claim& claim,
-                                            std::int64_t true_ns) const {
-        return within_limits(joint, claim) > 0 || after_silence(joint, true_ns);
+    /// Whether the readings that count have this value around its instant, as late as frames may be.
+    template <class Counts>
+    [[nodiscard]] bool is_shown(std::size_t joint, double JointSight::Shown::*what, const Claim& claim,
+                                double tolerance, Counts counts) const {
+        const auto time_ns = static_cast<std::int64_t>(1e9 * claim.time_s);
+        const auto unknown_ns = static_cast<std::int64_t>(1e9 * claim.unknown_s);
+        return sight_[joint].shows(what, claim.value, tolerance, time_ns - unknown_ns - bus_jitter,
+                                   time_ns + bus_jitter, counts);
+    }
+
+    /// Whether an effort comes in frames with a position that is wrong or undecidable, as it is there.
+    [[nodiscard]] bool of_undecidable_joint(std::size_t joint, const Claim& claim, double tolerance) const {
+        return is_shown(
+            joint, &JointSight::Shown::effort, claim, tolerance,
+            [&](const JointSight::Shown& shown) { return !shown.right || after_silence(joint, shown); });
     }
 
     /// How far the limits allow a joint to be from where it is: what it can do for so long after its last
@@ -170,7 +181,9 @@ class Judge {
         const double reading = arm_.step_rad[joint] + fastest * jitter_s;
         const double speed =
             span_ns > 0 ? 2 * reading / span_s + 0.5 * limits_.acceleration * span_s : limits_.velocity;
-        return reading + speed * age_s + 0.5 * limits_.acceleration * age_s * age_s;
+        const double off = reading + speed * age_s + 0.5 * limits_.acceleration * age_s * age_s;
+        const double most = (limits_.velocity + std::abs(velocity)) * age_s + 2 * arm_.step_rad[joint];
+        return std::min(off, most); // of two joints that leave with all their speed
     }
 
     /// Ten times what wrenches are usually off their line, by noise and lateness, and what else the gate

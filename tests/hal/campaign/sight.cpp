@@ -11,7 +11,7 @@ constexpr int many = 20; ///< readings
 constexpr std::int64_t set_back_ns = 5'000'000;
 constexpr int frames_until_adopted = 20; ///< of a clock that was set back
 constexpr std::int64_t stray_ns = 5'000'000;
-constexpr std::int64_t unlimited_ns = 1'000'000'000'000;
+constexpr std::int64_t left_out_ns = 50'000'000; ///< at most: the time of those frames
 
 /// More than a frame that comes late by as much as a period is off.
 double jump_rad(double velocity) { return 1e-3 + 3e-3 * std::abs(velocity); }
@@ -45,6 +45,19 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
         examine(site, joint, sent, time_ns);
     }
     std::ranges::stable_sort(blind_, {}, &Blind::time_ns);
+    std::ranges::stable_sort(shown_, {}, &Shown::time_ns);
+}
+
+bool JointSight::is_on_line(const Shown& one, const Shown& next, double Shown::*what, double value,
+                            double tolerance, std::int64_t from_ns, std::int64_t to_ns) {
+    const std::int64_t begin_ns = std::max(from_ns, one.time_ns);
+    const std::int64_t end_ns = std::min(to_ns, next.time_ns);
+    const double slope =
+        next.time_ns == one.time_ns ? 0 : (next.*what - one.*what) / seconds_of(next.time_ns - one.time_ns);
+    const auto at = [&](std::int64_t time_ns) {
+        return one.*what + slope * seconds_of(time_ns - one.time_ns);
+    };
+    return begin_ns <= end_ns && is_between(value, at(begin_ns), at(end_ns), tolerance);
 }
 
 void JointSight::examine(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns) {
@@ -70,6 +83,7 @@ void JointSight::examine(const FaultSite& site, std::size_t joint, const Sent& s
           .at_zero = std::abs(from_zero) <= motion && !can_move_to(reading, step),
           .velocity = velocity},
          reading);
+    shown_.push_back({time_ns, shown, sent.shown[joint].effort, reading.right, runs_.size() - 1});
 }
 
 bool JointSight::can_move_to(const Reading& reading, double step_rad) const {
@@ -89,10 +103,10 @@ void JointSight::begin_run(Run seen, const Reading& reading) {
         return;
     }
     const Reading& before = last_established_;
-    seen.blind_ns = before.true_ns == 0 ? 0
-                    : set_back_
-                        ? unlimited_ns
-                        : std::max(reading.true_ns - before.true_ns, reading.stamp_ns - before.stamp_ns);
+    seen.blind_ns = before.true_ns == 0
+                        ? 0
+                        : std::max(reading.true_ns - before.true_ns, reading.stamp_ns - before.stamp_ns) +
+                              (set_back_ ? left_out_ns : 0);
     runs_.push_back(seen);
 }
 
@@ -123,6 +137,9 @@ void JointSight::take(Run seen, const Reading& reading) {
     blind_.push_back({reading.time_ns,
                       reading.right ? 0 : std::max<std::int64_t>(1, reading.time_ns - right_ns), span_ns()});
     if (reading.right) {
+        if (!known_ns_.empty() && reading.time_ns - known_ns_.back() > bus_max_age + 2 * bus_track_jitter) {
+            known_ns_.clear(); // it may have another velocity since
+        }
         known_ns_.push_back(reading.time_ns);
     }
     if (known_ns_.size() > 4) {

@@ -21,8 +21,8 @@ class JointSight {
   public:
     struct Run {
         std::int64_t begin_ns = 0; ///< true time
-        /// From the last right reading to the begin, by whichever clock is longer; unlimited where the clock
-        /// was set back, after which nobody knows it.
+        /// From the last right reading to the begin, by whichever clock is longer, and the frames that are
+        /// left out where the clock was set back.
         std::int64_t blind_ns = 0;
         double error_rad = 0;     ///< of what the device shows at the begin
         double from_zero_rad = 0; ///< of what it shows there
@@ -37,7 +37,36 @@ class JointSight {
         std::int64_t time_ns, blind_ns, span_ns;
     };
 
+    /// What the device shows at a time.
+    struct Shown {
+        std::int64_t time_ns;
+        double position_rad, effort;
+        bool right;
+        std::size_t run; ///< of `run`
+    };
+
     JointSight(const FaultSite& site, std::size_t joint);
+
+    /// The runs, by number.
+    [[nodiscard]] const Run& run(std::size_t number) const { return runs_[number]; }
+
+    /// Whether the device shows a value at some time from `from_ns` to `to_ns`, in a reading or on the line
+    /// between two that are not far apart. Of the readings for which `counts(shown)` holds.
+    template <class Counts>
+    [[nodiscard]] bool shows(double Shown::*what, double value, double tolerance, std::int64_t from_ns,
+                             std::int64_t to_ns, Counts counts) const {
+        constexpr std::int64_t apart_ns = bus_max_age + 2 * bus_track_jitter;
+        const auto begin = std::ranges::lower_bound(shown_, from_ns - apart_ns, {}, &Shown::time_ns);
+        for (auto one = begin; one != shown_.end() && one->time_ns <= to_ns; ++one) {
+            for (auto next = one; next != shown_.end() && next->time_ns <= one->time_ns + apart_ns; ++next) {
+                if (counts(*one) && counts(*next) &&
+                    is_on_line(*one, *next, what, value, tolerance, from_ns, to_ns)) {
+                    return true;
+                }
+            }
+        }
+        return false;
+    }
 
     /// The run that an instant belongs to.
     [[nodiscard]] const Run& run_at(std::int64_t true_ns) const;
@@ -53,6 +82,8 @@ class JointSight {
         double shown_rad, error_rad;
         bool right;
     };
+    static bool is_on_line(const Shown& one, const Shown& next, double Shown::*what, double value,
+                           double tolerance, std::int64_t from_ns, std::int64_t to_ns);
     /// Whether the joint can have moved there from the reading before: then it only passes its zero.
     [[nodiscard]] bool can_move_to(const Reading& reading, double step_rad) const;
     void examine(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns);
@@ -62,6 +93,7 @@ class JointSight {
 
     std::vector<Run> runs_{Run{}};
     std::vector<Blind> blind_; ///< by time
+    std::vector<Shown> shown_; ///< by time
     Reading last_{}, last_established_{};
     std::deque<std::int64_t> known_ns_; ///< times of the last right readings, since the clock was set
     int right_ = 0;                     ///< readings in a row
