@@ -30,6 +30,22 @@ static void mark_changes(const hal::Frame& one, const hal::Frame& other, Bits& b
     }
 }
 
+bool CampaignArm::has_form(const hal::Frame& frame) const {
+    const auto same = [&](const hal::Frame& sent) {
+        return sent.id == frame.id && sent.length == frame.length && sent.extended == frame.extended &&
+               sent.fd == frame.fd && sent.remote == frame.remote;
+    };
+    const auto any_of = [&](const wire::Frames& sent) {
+        return std::any_of(sent.frame.begin(), sent.frame.begin() + static_cast<std::ptrdiff_t>(sent.count),
+                           same);
+    };
+    bool has = std::ranges::any_of(status, same) || (wrench && any_of(wrench({})));
+    for (std::size_t board = 0; board < boards; ++board) {
+        has = has || any_of(frames(board, {}));
+    }
+    return has;
+}
+
 void CampaignArm::find_fields() {
     std::mt19937_64 engine(1);
     std::uniform_real_distribution<double> position(-1.9, 1.9), effort(-8, 8);

@@ -54,7 +54,7 @@ struct CampaignArm {
     std::function<wire::Frames(std::size_t board, const wire::Joints&)> frames;
     std::function<wire::Frames(const wire::SixWords&)> wrench;
     std::function<void(hal::Frame&, std::size_t half)> saturate_wrench;
-    std::function<bool(const hal::Frame&)> has_values; ///< whether a device of the arm may send it
+    std::function<bool(const hal::Frame&)> has_values; ///< whether the product takes values from it
     std::vector<hal::Frame> status;                    ///< sent at the start and every 100 ms
     std::function<std::unique_ptr<ReceivingArm>(Trigger, const hal::MotionLimits&)> receive;
 
@@ -65,6 +65,9 @@ struct CampaignArm {
     std::array<std::array<Fields, 3>, 2> fields{}; ///< [board][part]
 
     [[nodiscard]] bool efforts() const { return output_range == 0; }
+
+    /// Whether a device of the arm sends frames with this identifier, length and flags.
+    [[nodiscard]] bool has_form(const hal::Frame& frame) const;
 
     /// Finds the fields by what changes in the frames.
     void find_fields();

@@ -182,6 +182,11 @@ void overload(FaultSite& site) {
     site.sort();
 }
 
+static void set_length(hal::Frame& frame, int length) {
+    frame.length = static_cast<std::uint8_t>(length);
+    std::fill(frame.data.begin() + length, frame.data.end(), std::uint8_t{0});
+}
+
 void malform(FaultSite& site) {
     site.change([&](Sent& sent) {
         if (!FaultSite::is_device(sent) || !site.chance(0.1)) {
@@ -191,7 +196,7 @@ void malform(FaultSite& site) {
         const hal::Frame sound = sent.frame;
         switch (site.pick(4)) {
         case 0:
-            sent.frame.length = static_cast<std::uint8_t>((sent.frame.length + 1 + site.pick(7)) % 9);
+            set_length(sent.frame, (sent.frame.length + 1 + site.pick(7)) % 9);
             break;
         case 1:
             sent.frame.remote = true;
@@ -204,7 +209,7 @@ void malform(FaultSite& site) {
             sent.frame.id &= 0x7FFU;
             break;
         }
-        if (site.arm.has_values(sent.frame)) { // some devices have frames of several forms
+        if (site.arm.has_form(sent.frame)) { // some devices have frames of several forms
             sent.frame = sound;
             sent.frame.remote = true;
         }

@@ -54,8 +54,9 @@ inline void fight(const CampaignArm& arm, Trigger trigger, std::uint64_t frames,
 }
 
 /// Prints the sum, and checks what holds over all families. `most_wrong`: share of the accepted samples;
-/// `most_refused`: share of the good ones.
-inline void check_sum(CampaignRow sum, double most_wrong, double most_refused) {
+/// `most_refused`: share of the good ones; `most_undecidable`: of the accepted ones, and of their outputs.
+inline void check_sum(CampaignRow sum, double most_wrong, double most_refused,
+                      double most_undecidable = 0.02) {
     sum.family = "all";
     print(sum, "");
     for (const std::string& wrong : sum.wrong) {
@@ -63,7 +64,8 @@ inline void check_sum(CampaignRow sum, double most_wrong, double most_refused) {
     }
     CHECK(share(sum.wrong_positions + sum.wrong_outputs, sum.accepted) <= most_wrong);
     CHECK(sum.accepted > sum.samples / 3); // it is not right by saying nothing
-    CHECK(sum.undecidable_positions < sum.accepted / 50);
+    CHECK(share(sum.undecidable_positions, sum.accepted) < most_undecidable);
+    CHECK(share(sum.undecidable_outputs, sum.outputs) < most_undecidable);
     CHECK(share(sum.refused_good, sum.good) < most_refused);
     CHECK(share(sum.unlearned_good, sum.good) < 0.01);
 }

@@ -94,15 +94,6 @@ CampaignArm campaign_arm(const BusDescription& description) {
     add_boards(description, arm);
     const DeviceFrames devices(description);
     arm.status = devices.heartbeats();
-    arm.has_values = [description](const Frame& frame) {
-        const auto carried = [](const hal::Decoded& decoded) {
-            return decoded.kind == hal::Decoded::Kind::values || decoded.kind == hal::Decoded::Kind::part;
-        };
-        auto sensor = description.sensor;
-        return (sensor && carried(sensor->decode(frame))) ||
-               std::ranges::any_of(description.boards,
-                                   [&](auto board) { return carried(board.board.decode(frame)); });
-    };
     if (description.sensor) {
         arm.output_range = description.output_range.front().highest;
         arm.wrench = [description](const wire::SixWords& raw) {
