@@ -8,7 +8,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::int64_t pause_ns = 2'000'000'000;
+constexpr auto pause_ns = static_cast<std::int64_t>(1e9 * joined_pause_s);
 
 void append(Columns& columns, const Columns& more) {
     columns.values.insert(columns.values.end(), more.values.begin(), more.values.end());

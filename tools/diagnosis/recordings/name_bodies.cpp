@@ -4,6 +4,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/diagnosis/verdict/findings.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
 #include "tools/robot/firmware_chain.hpp"
@@ -53,6 +54,23 @@ class BodyNamer {
         }
         for (const ArmHypothesis& link : several_.answer.wrong_links) {
             add_link(link);
+        }
+    }
+
+    /// Doubts loads that were taken up where a recording begins or ends: they differ between recordings, and
+    /// the load of a recording is sought as such.
+    void doubt_loads_at_borders() {
+        constexpr double near_s = 2;
+        for (Finding& one : findings()) {
+            const bool taken = one.effect == effects::payload().name && one.parameters.size() > 4;
+            const double time_s = taken ? one.parameters.back().value : 0;
+            const bool at_border = std::ranges::any_of(ends_s_, [&](double end_s) {
+                return time_s > end_s - near_s && time_s < end_s + joined_pause_s + near_s;
+            });
+            if (taken && at_border) {
+                one.confidence = std::min(one.confidence, unlikely);
+                one.evidence += " (it begins where a recording does: --changed payload seeks such loads)";
+            }
         }
     }
 
@@ -185,6 +203,7 @@ class BodyNamer {
 void name_bodies(DiagnosisWork& work, const SeveralRecordings& several, const std::vector<double>& ends_s,
                  const Gains& gains, bool fitted_everywhere) {
     BodyNamer namer(work, several, ends_s, gains);
+    namer.doubt_loads_at_borders();
     if (fitted_everywhere) {
         namer.name_links();
     }
