@@ -36,10 +36,10 @@ namespace dfdyn {
 template <class Scalar, class Arm, int M, int history = 48>
 class Monitor {
   public:
-    static constexpr int n = Arm::joints;    ///< joints
-    static constexpr int m = Arm::outputs;   ///< outputs
-    using Change = dfdyn::Change<Scalar, m>; ///< a change with its most probable cause
-    using Constants = MonitorConstants<Scalar, Arm, M>;
+    static constexpr int n = Arm::joints;               ///< joints
+    static constexpr int m = Arm::outputs;              ///< outputs
+    using Change = dfdyn::Change<Scalar, m>;            ///< a change with its most probable cause
+    using Constants = MonitorConstants<Scalar, Arm, M>; ///< geometry, time scales, false-alarm rate
 
     static constexpr int catch_up = 3; ///< stored blocks that the bank adds per new block
     /// Smallest usual scale of a block's innovation, as a share of that of white innovations with the

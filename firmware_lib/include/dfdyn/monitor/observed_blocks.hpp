@@ -50,11 +50,11 @@ struct MonitorConstants {
 template <class Scalar, class Arm, int M, int history>
 class ObservedBlocks {
   public:
-    static constexpr int n = Arm::joints;  ///< joints
-    static constexpr int m = Arm::outputs; ///< outputs
-    using Constants = MonitorConstants<Scalar, Arm, M>;
-    using Motion = typename Constants::Motion;
-    using Block = OutputBlock<Scalar>;
+    static constexpr int n = Arm::joints;               ///< joints
+    static constexpr int m = Arm::outputs;              ///< outputs
+    using Constants = MonitorConstants<Scalar, Arm, M>; ///< of the monitor
+    using Motion = typename Constants::Motion;          ///< of the joints, from the window
+    using Block = OutputBlock<Scalar>;                  ///< means of one output
     /// Joint torques, which joint friction changes, and no wrench.
     static constexpr bool torques = std::is_same_v<typename Arm::Output, JointTorques>;
 
