@@ -54,7 +54,8 @@ TEST_CASE("a chart of curves shows each with its name and with points at the rig
     CHECK_THAT(line_of(svg), Catch::Matchers::StartsWith("M66.00 "));
     std::smatch match;
     const std::string line = line_of(svg);
-    REQUIRE(std::regex_match(line, match, std::regex("M66\\.00 ([0-9.]+)L([0-9.]+) ([0-9.]+)L[0-9.]+ [0-9.]+")));
+    REQUIRE(
+        std::regex_match(line, match, std::regex("M66\\.00 ([0-9.]+)L([0-9.]+) ([0-9.]+)L[0-9.]+ [0-9.]+")));
     const auto y_pixel = [](double y) { return 364 - 330 * std::log(y / 0.5) / std::log(400); };
     CHECK(std::stod(match[1]) == Approx(y_pixel(1)).margin(0.06));
     CHECK(std::stod(match[2]) == Approx(66 + 520 * std::log(2) / std::log(5)).margin(0.06));

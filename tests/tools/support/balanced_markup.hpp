@@ -10,7 +10,7 @@
 namespace dfdyn::tests {
 
 /// Describes the first error in the nesting of the elements of `markup` (HTML or SVG as this program writes
-/// it). Returns an empty text if there is none.
+/// it), without the text of scripts. Returns an empty text if there is none.
 inline std::string markup_fault(std::string_view markup) {
     constexpr std::array<std::string_view, 3> without_end{"meta", "br", "!DOCTYPE"};
     std::vector<std::string> open;
@@ -31,6 +31,9 @@ inline std::string markup_fault(std::string_view markup) {
         }
         if (std::ranges::count(tag, '"') % 2 != 0) {
             return "an open quote in <" + std::string(tag) + ">";
+        }
+        if (name == "script") {
+            at = markup.find("</script>", end) - 1;
         }
     }
     return open.empty() ? "" : "<" + open.back() + "> without an end";
