@@ -74,7 +74,7 @@ TEST_CASE("an evaluation writes page and tables and findings and figures and pic
     }
 }
 
-TEST_CASE("the page needs no network") {
+TEST_CASE("the page of an evaluation needs no network") {
     const TemporaryDirectory directory;
     write(directory, evaluation());
     const std::string html = file_content(directory.path() / "report.html");
