@@ -38,7 +38,7 @@ struct DiagnoseOptions {
     std::filesystem::path folder;
     std::filesystem::path header;
     std::vector<std::string> formats; ///< names of robot_formats()
-    std::vector<std::string> changed; ///< the name of the payload, or nothing
+    std::string changed;              ///< the name of the payload, or nothing
     bool quick = false;
     bool no_setup_check = false;
     bool json = false;

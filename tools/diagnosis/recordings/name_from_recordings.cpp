@@ -79,8 +79,7 @@ class TermNamer {
 
     /// Columns (T x 5) of a joint's terms in the joined recording.
     MatrixXd columns(Index joint) const {
-        return fit_moving_rows(signals_, work_.measured.col(joint), signals_.nominal.col(joint), joint, true)
-            .columns;
+        return textbook_columns(signals_, signals_.nominal.col(joint), joint);
     }
 
     /// Returns what the pooled values leave of the joined recording's torques.

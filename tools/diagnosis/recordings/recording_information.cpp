@@ -2,13 +2,11 @@
 #include "tools/diagnosis/recordings/recording_information.hpp"
 
 #include "tools/diagnosis/verdict/textbook.hpp"
-#include "tools/robot/firmware_chain.hpp"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -42,18 +40,11 @@ struct JointRows {
 /// Returns the rows of a joint. Without a weight if it hardly moves.
 JointRows rows_of(const DiagnosisSignals& signals, const MatrixXd& measured, const MatrixXd& terms,
                   Index joint) {
-    const Index links = signals.regressor.cols();
     JointRows rows;
-    rows.unknowns.resize(static_cast<std::size_t>(links + terms.cols()));
-    std::iota(rows.unknowns.begin(), rows.unknowns.end() - terms.cols(), 0);
-    std::iota(rows.unknowns.end() - terms.cols(), rows.unknowns.end(), first_term(signals, joint));
-    rows.columns.resize(signals.rows(), links + terms.cols());
-    rows.columns << signals.regressor(Eigen::seqN(joint, signals.rows(), signals.outputs()), Eigen::all),
-        terms;
+    rows.unknowns = unknowns_of(signals, joint);
+    rows.columns = arm_columns(signals, joint, terms);
     rows.target = measured.col(joint) - signals.nominal.col(joint);
-    rows.weight = signals.hardly_moves(static_cast<std::size_t>(joint))
-                      ? VectorXd(VectorXd::Zero(signals.rows()))
-                      : row_weight(signals, joint);
+    rows.weight = moving_weight(signals, joint);
     rows.robust = rows.weight;
     return rows;
 }
@@ -86,21 +77,6 @@ double correlated_rows(const VectorXd& residual, const VectorXd& weight, double 
         sum += 2 * correlation;
     }
     return std::clamp(sum, std::max(1.0, least_s * rate_hz), std::max(1.0, most_s * rate_hz));
-}
-
-VectorXd link_deviations(const DiagnosisSignals& signals) {
-    const VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
-    constexpr double mass_share = 0.1, centre_m = 0.03, inertia_share = 0.3;
-    constexpr double least = 1e-6; // of links without a mass
-    VectorXd deviations(nominal.size());
-    for (Index first = 0; first < nominal.size(); first += 10) {
-        const double mass = nominal[first];
-        const double inertia = (nominal[first + 4] + nominal[first + 7] + nominal[first + 9]) / 2;
-        deviations[first] = mass_share * mass;
-        deviations.segment<3>(first + 1).setConstant(centre_m * mass);
-        deviations.segment<6>(first + 4).setConstant(inertia_share * std::abs(inertia));
-    }
-    return deviations.cwiseMax(least);
 }
 
 RecordingInformation information_of(const DiagnosisSignals& signals, const MatrixXd& measured,

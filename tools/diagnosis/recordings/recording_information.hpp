@@ -3,28 +3,13 @@
 
 #include "tools/diagnosis/recordings/pooled_fit.hpp"
 #include "tools/diagnosis/signals/signals.hpp"
+#include "tools/diagnosis/verdict/arm_unknowns.hpp"
 
 #include <Eigen/Core>
 
 #include <vector>
 
 namespace dfdyn::tools {
-
-/// Terms of plain least squares per joint (`TextbookTerm`).
-inline constexpr Eigen::Index terms_of_joint = 5;
-
-/// Standard deviation (SI units) of a term without a prior.
-inline constexpr double unknown_deviation = 1e3;
-
-/// Returns the number of the first term of a joint among the unknowns of an arm: the links' parameters (10
-/// per body), then the terms of each joint, all as differences from the robot's file.
-inline Eigen::Index first_term(const DiagnosisSignals& signals, Eigen::Index joint) {
-    return signals.regressor.cols() + terms_of_joint * joint;
-}
-
-/// Returns the standard deviations (10 per body) of the links' parameters: what a robot's file may be wrong
-/// by.
-Eigen::VectorXd link_deviations(const DiagnosisSignals& signals);
 
 /// Returns the number of rows that are worth one independent row: the sum of the residual's autocorrelation
 /// (T, weighted) up to its first zero, from 0.1 s to 1 s. Cost: O(T) per lag.

@@ -34,15 +34,14 @@ RecordingInformation information_with(const DiagnosisSignals& signals, const Vec
     const MatrixXd measured = signals.measured.outputs * gains.cwiseInverse().asDiagonal();
     std::vector<MatrixXd> terms;
     for (Index joint = 0; joint < signals.outputs(); ++joint) {
-        terms.push_back(
-            fit_moving_rows(signals, measured.col(joint), signals.nominal.col(joint), joint, true).columns);
+        terms.push_back(textbook_columns(signals, signals.nominal.col(joint), joint));
     }
     return information_of(signals, measured, terms);
 }
 
-/// Returns the gains of the joined recording, which the diagnosis uses.
-VectorXd common_gains(const Robot& robot, const std::vector<Recording>& recordings,
-                      const DiagnosisOptions& options) {
+/// Returns the gains that the joined recording shows, which the diagnosis uses.
+VectorXd estimated_gains(const Robot& robot, const std::vector<Recording>& recordings,
+                         const DiagnosisOptions& options) {
     return torque_gains(
         diagnosis_signals(robot, options.outputs, measured_motion(joined_recording(recordings))), options);
 }
@@ -96,13 +95,14 @@ SeveralRecordings fit_recordings(const Robot& robot, const std::vector<Recording
     if (!several.answered()) {
         return several;
     }
-    several.torque_gains = common_gains(robot, recordings, options);
+    const bool gains_known =
+        options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
+    several.torque_gains =
+        gains_known ? torque_gains(signals.front(), options) : estimated_gains(robot, recordings, options);
     std::vector<RecordingInformation> information;
     for (const DiagnosisSignals& one : signals) {
         information.push_back(information_with(one, several.torque_gains));
     }
-    const bool gains_known =
-        options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
     several.answer = ask_recordings(signals.front(), information, loads_differ, gains_known);
     return several;
 }

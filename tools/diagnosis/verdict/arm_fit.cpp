@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/verdict/arm_fit.hpp"
 
-#include "tools/diagnosis/recordings/recording_information.hpp"
+#include "tools/diagnosis/verdict/arm_unknowns.hpp"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -31,7 +30,7 @@ class ArmEquations {
         : signals_(signals), target_(measured - signals.nominal), rest_(target_), plain_(plain),
           links_(link_deviations(signals)) {
         for (Index joint = 0; joint < joints(); ++joint) {
-            weight_.emplace_back(weight_of(joint));
+            weight_.emplace_back(moving_weight(signals_, joint));
             const MovingFit& own = plain[static_cast<std::size_t>(joint)];
             variance_.push_back(
                 weighted_mean_square(measured.col(joint) - own.columns * own.values, weight_.back()));
@@ -55,7 +54,7 @@ class ArmEquations {
             system(first_term(joint), first_term(joint)) += 1 / (gain * gain);
             const double rows = std::max(1.0, correlation_s * signals_.measured.rate_hz);
             const double scale = 1 / (rows * std::max(variance_[number], 1e-12));
-            const std::vector<Index> own = unknowns_of(joint);
+            const std::vector<Index> own = unknowns_of(signals_, joint);
             system(own, own) += scale * gram_[number];
             moment(own) += scale * moment_[number];
         }
@@ -64,7 +63,7 @@ class ArmEquations {
         covariance_ = factor.solve(MatrixXd::Identity(size, size));
         for (Index joint = 0; joint < joints(); ++joint) {
             const auto number = static_cast<std::size_t>(joint);
-            rest_.col(joint) = target_.col(joint) - columns(joint) * values_(unknowns_of(joint));
+            rest_.col(joint) = target_.col(joint) - columns(joint) * values_(unknowns_of(signals_, joint));
             variance_[number] = weighted_mean_square(rest_.col(joint), weight_[number]);
         }
     }
@@ -76,25 +75,8 @@ class ArmEquations {
     const MatrixXd& rest() const { return rest_; } ///< T x n: what the values leave
 
   private:
-    /// Returns the weights of the rows; a joint that hardly moves has none.
-    VectorXd weight_of(Index joint) const {
-        return signals_.hardly_moves(static_cast<std::size_t>(joint))
-                   ? VectorXd(VectorXd::Zero(signals_.rows()))
-                   : row_weight(signals_, joint);
-    }
-
-    std::vector<Index> unknowns_of(Index joint) const {
-        std::vector<Index> result(static_cast<std::size_t>(links_.size() + terms_of_joint));
-        std::iota(result.begin(), result.end() - terms_of_joint, 0);
-        std::iota(result.end() - terms_of_joint, result.end(), first_term(joint));
-        return result;
-    }
-
     MatrixXd columns(Index joint) const {
-        MatrixXd result(signals_.rows(), links_.size() + terms_of_joint);
-        result << signals_.regressor(Eigen::seqN(joint, signals_.rows(), joints()), Eigen::all),
-            plain_[static_cast<std::size_t>(joint)].columns;
-        return result;
+        return arm_columns(signals_, joint, plain_[static_cast<std::size_t>(joint)].columns);
     }
 
     void add_products(Index joint) {

@@ -16,19 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd textbook_columns(const DiagnosisSignals& signals, const VectorXd& rigid, Index output) {
-    const RobotMotion& motion = signals.measured.motion;
-    MatrixXd columns = MatrixXd::Zero(rigid.size(), 5);
-    columns.col(0) = rigid;
-    if (!signals.wrench()) {
-        columns.col(1) = motion.acceleration.col(output);
-        columns.col(2) = motion.velocity.col(output);
-        columns.col(3) = signals.direction(output);
-    }
-    columns.col(4).setOnes();
-    return columns;
-}
-
 /// Weighted least squares of columns that may be zero or combinations of each other.
 struct WeightedFit {
     VectorXd scale;   ///< inverse weighted norms of the columns; 0 for a column of zeros
@@ -102,6 +89,19 @@ void expect_gain_of_one(MovingFit& fit) {
 }
 
 } // namespace
+
+MatrixXd textbook_columns(const DiagnosisSignals& signals, const VectorXd& rigid, Index output) {
+    const RobotMotion& motion = signals.measured.motion;
+    MatrixXd columns = MatrixXd::Zero(rigid.size(), 5);
+    columns.col(0) = rigid;
+    if (!signals.wrench()) {
+        columns.col(1) = motion.acceleration.col(output);
+        columns.col(2) = motion.velocity.col(output);
+        columns.col(3) = signals.direction(output);
+    }
+    columns.col(4).setOnes();
+    return columns;
+}
 
 bool contradicts_known_gain(double gain, double variance) {
     constexpr double far = 3;

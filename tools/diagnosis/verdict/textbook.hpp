@@ -16,6 +16,11 @@ struct TextbookFit {
     Eigen::MatrixXd prediction; ///< T x m, N·m (N)
 };
 
+/// Returns the columns of that model (T x 5, in the order of `TextbookTerm`) with the rigid body's output
+/// `rigid` (T).
+Eigen::MatrixXd textbook_columns(const DiagnosisSignals& signals, const Eigen::VectorXd& rigid,
+                                 Eigen::Index output);
+
 /// Fits the first `rows` rows of `measured`, T x m, with the rigid body's outputs `rigid`, T x m. All rows
 /// have the same weight. Cost: O(25 T m).
 TextbookFit textbook_fit(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
