@@ -24,7 +24,7 @@ class AwayWatch {
     constexpr void take(const EncoderReading& reading) noexcept {
         const double apart_rad = seen_ ? reading.position_rad - seen_->position_rad : 0;
         const std::int64_t since_ns = seen_ ? reading.stamp_ns - seen_->stamp_ns : 0;
-        const double reach = reach_rad(since_ns, reading.step_rad);
+        const double reach = tolerance_.reach_untimed(since_ns, reading.step_rad);
         const double most = small_share * magnitude(away_rad_);
         const bool far = magnitude(apart_rad) > reach;
         const bool recent = since_ns <= max_age_ns_;
@@ -74,17 +74,11 @@ class AwayWatch {
     /// five times as far may be a velocity limit that is too low, or a reading that is late.
     static constexpr double small_share = 0.2;
 
-    /// How far the joint can have moved between two readings whose time is known to a period.
-    [[nodiscard]] constexpr double reach_rad(std::int64_t since_ns, double step_rad) const noexcept {
-        return tolerance_.reach(
-            seconds_between(0, std::max<std::int64_t>(since_ns, 0) + tolerance_.period_ns), step_rad);
-    }
-
     /// Returns true if the readings have come back without another jump, and sooner than the joint moves so
     /// far itself at half of its velocity limit: frames were lost after a flipped bit, or a device filters.
     [[nodiscard]] constexpr bool is_back(const EncoderReading& reading) const noexcept {
         const double way_rad = magnitude(away_rad_);
-        const double reach = reach_rad(reading.stamp_ns - left_ns_, reading.step_rad);
+        const double reach = tolerance_.reach_untimed(reading.stamp_ns - left_ns_, reading.step_rad);
         return reach <= 2 * way_rad && magnitude(away_rad_ + moved_rad_) <= std::min(reach, 0.5 * way_rad);
     }
 

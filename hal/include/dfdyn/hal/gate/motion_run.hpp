@@ -19,6 +19,11 @@ struct MotionTolerance {
         return limits.velocity * (dt_s + jitter_s) + 2 * step_rad;
     }
 
+    /// How far the joint can move between two readings, `since_ns` apart, whose time is known to a period.
+    [[nodiscard]] constexpr double reach_untimed(std::int64_t since_ns, double step_rad) const noexcept {
+        return reach(seconds_between(0, std::max<std::int64_t>(since_ns, 0) + period_ns), step_rad);
+    }
+
     [[nodiscard]] constexpr bool reaches(const EncoderReading& from,
                                          const EncoderReading& to) const noexcept {
         const double distance = magnitude(to.position_rad - from.position_rad);

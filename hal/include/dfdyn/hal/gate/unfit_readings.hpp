@@ -54,9 +54,9 @@ class UnfitReadings {
 
     /// Returns whether a joint cannot move from one reading to the other, whose time is known to a period.
     [[nodiscard]] constexpr bool is_far(const EncoderReading& from, const EncoderReading& to) const noexcept {
-        const std::int64_t since_ns = std::clamp(to.stamp_ns - from.stamp_ns, std::int64_t{0}, max_age_ns_);
+        const std::int64_t since_ns = std::min(to.stamp_ns - from.stamp_ns, max_age_ns_);
         return magnitude(to.position_rad - from.position_rad) >
-               tolerance_.reach(seconds_between(0, since_ns + tolerance_.period_ns), to.step_rad);
+               tolerance_.reach_untimed(since_ns, to.step_rad);
     }
 
   private:
