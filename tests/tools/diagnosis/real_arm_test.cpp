@@ -7,12 +7,12 @@
 // - when somebody pushed it.
 #include "tests/support/catch.hpp"
 #include "tests/tools/robot/arms.hpp"
+#include "tests/tools/support/ur5_runs.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,16 +23,7 @@ using namespace dfdyn::tools;
 
 /// Motor currents of the robot; several runs are joined into one recording.
 Recording currents(const std::vector<std::string>& runs) {
-    std::vector<std::filesystem::path> files;
-    for (const std::string& run : runs) {
-        files.push_back(std::filesystem::path(DFDYN_TEST_DATA_DIR "/ur5_kufieta") /
-                        ("Movement_" + run + ".csv"));
-    }
-    ReadOptions columns;
-    columns.joint_count = 6;
-    columns.outputs = OutputKind::motor_current;
-    columns.skip_bad_rows = true;
-    return joined_recording(read_recordings(files, columns));
+    return joined_recording(dfdyn::tests::ur5_runs(runs));
 }
 
 Diagnosis diagnosis_of_run(const Recording& recording, bool measure = false) {

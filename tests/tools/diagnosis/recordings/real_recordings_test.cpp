@@ -2,10 +2,10 @@
 // Two disjoint groups of recordings of one real UR5 (tests/data/ur5_kufieta/PROVENANCE.md), without a load.
 #include "tests/support/catch.hpp"
 #include "tests/tools/robot/arms.hpp"
+#include "tests/tools/support/ur5_runs.hpp"
 #include "tools/diagnosis/recordings/several_recordings.hpp"
 
 #include <cmath>
-#include <filesystem>
 
 namespace {
 
@@ -13,19 +13,10 @@ using namespace dfdyn::tools;
 using Eigen::Index;
 
 SeveralRecordings answer_of(const std::vector<std::string>& runs) {
-    std::vector<std::filesystem::path> files;
-    for (const std::string& run : runs) {
-        files.push_back(std::filesystem::path(DFDYN_TEST_DATA_DIR "/ur5_kufieta") /
-                        ("Movement_" + run + ".csv"));
-    }
-    ReadOptions columns;
-    columns.joint_count = 6;
-    columns.outputs = OutputKind::motor_current;
-    columns.skip_bad_rows = true;
     DiagnosisOptions options;
     options.outputs = OutputKind::motor_current;
     options.torque_constants = {8.2, 11.4, 9.4, 7, 11, 1.3}; // N·m/A, estimated from No6
-    return fit_recordings(dfdyn::tests::ur5(), read_recordings(files, columns), options, true);
+    return fit_recordings(dfdyn::tests::ur5(), dfdyn::tests::ur5_runs(runs), options, true);
 }
 
 } // namespace
