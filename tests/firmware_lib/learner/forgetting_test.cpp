@@ -152,6 +152,23 @@ TEST_CASE("rows with only rounding errors do not allow forgetting for any memory
     CHECK(paid(4000 * epsilon));
 }
 
+TEST_CASE("an arm rests if the account is empty and the last sample paid nothing") {
+    Forgetting<double> forgetting(0.99, 10);
+    constexpr double no_information = 1;
+    constexpr double information = 1.1;
+    CHECK_FALSE(forgetting.resting());
+    static_cast<void>(forgetting.factor_after(no_information));
+    CHECK_FALSE(forgetting.resting()); // the account is still full
+    static_cast<void>(forgotten_at_rest(forgetting, 1000));
+    CHECK(forgetting.resting());
+    static_cast<void>(forgetting.factor_after(information));
+    CHECK_FALSE(forgetting.resting());
+    static_cast<void>(forgotten_at_rest(forgetting, 1000));
+    CHECK(forgetting.resting());
+    forgetting.restart();
+    CHECK_FALSE(forgetting.resting());
+}
+
 TEST_CASE("the parameters are checked in cyclic order") {
     Forgetting<float> forgetting(0.99F, 3);
     for (const int parameter : {0, 1, 2, 0, 1}) {

@@ -202,6 +202,26 @@ TEST_CASE("an arm that rests for an hour keeps the model of its motion in float 
     }
 }
 
+TEMPLATE_TEST_CASE("once an arm at rest has nothing more to forget, its covariance stays as it is", "", float,
+                   double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr int columns = 100;
+    constexpr double forgetting_factor = 0.9999;
+    auto same = engine;
+    Arm<TestType, columns> arm(engine, 1e8, forgetting_factor);
+    Arm<double, columns> exact(same, 1e8, forgetting_factor);
+    arm.move(20'000);
+    exact.move(20'000);
+    const double moved = exact.error();
+    arm.stand(60'000); // several horizons
+    exact.stand(60'000);
+    const double rested = arm.deviation();
+    CHECK(rested == Approx(exact.deviation()).epsilon(0.15));
+    arm.stand(20'000);
+    CHECK(arm.deviation() == rested);
+    CHECK(arm.error() < 1.2 * moved);
+}
+
 /// Checks that a motion of `samples` samples at a high signal-to-noise ratio is learned as accurately as the
 /// learner's standard deviation predicts.
 template <int columns>

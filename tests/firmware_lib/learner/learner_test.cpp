@@ -270,6 +270,22 @@ TEMPLATE_TEST_CASE("rows with another noise variance are weighted as in the batc
           TestType::tolerance);
 }
 
+TEMPLATE_TEST_CASE("a target that changes at rest is followed within the memory, however long the rest", "", UdFloat,
+                   UdDouble) {
+    constexpr double forgetting_factor = 0.999;
+    const Eigen::VectorXd row = Eigen::VectorXd::Constant(4, 0.5);
+    LearnerUnderTest<TestType> learner(4, 1, 100, forgetting_factor);
+    const auto rest = [&](double target, int samples) {
+        for (int t = 0; t < samples; ++t) {
+            learner.begin(row, Eigen::VectorXd::Constant(1, target));
+            learner.advance(Budget::unlimited());
+        }
+    };
+    rest(0, 200'000);
+    rest(1, static_cast<int>(5 / (1 - forgetting_factor)));
+    CHECK(learner.means(row)[0] == Approx(1).margin(0.02));
+}
+
 TEMPLATE_TEST_CASE("a covariance reset keeps the weights and continues as from that initial state", "",
                    UdFloat, UdDouble) {
     DFDYN_SEEDED_ENGINE(engine);

@@ -37,7 +37,7 @@ enum class SnapshotResult : std::uint8_t {
 /// sequentially, and an unfinished one is rejected.
 struct SnapshotHeader {
     static constexpr std::uint32_t expected_magic = 0x59444644; ///< "DFDY"
-    static constexpr std::uint32_t expected_version = 5;        ///< of the format
+    static constexpr std::uint32_t expected_version = 6;        ///< of the format
 
     std::uint32_t magic = expected_magic;     ///< of a snapshot in this machine's byte order
     std::uint32_t version = expected_version; ///< of the format

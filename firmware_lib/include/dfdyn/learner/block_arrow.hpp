@@ -106,7 +106,7 @@ class BlockArrow : public BlockArrowFootprint<Scalar, columns, p, m> {
         for (int element = 0; element < outputs_ * parameters_; ++element) {
             in_hand_.rows[element] = fresh_ ? present_.rows[element] : psi[element];
         }
-        factor_.begin(phi, noise_variance);
+        factor_.begin(phi, noise_variance, forgetting_.resting());
         noise_variance_ = noise_variance;
         next_ = 0;
         task_ = fresh_ ? Task::sweep : Task::residual;

@@ -29,7 +29,12 @@ namespace dfdyn {
 ///
 /// A sample that contributes less than 1024 ε per row (ε: machine epsilon) also pays nothing. There φ'Pφ is
 /// rounding error: it stops falling where one more row no longer changes the factor of P, and would pay
-/// forever. Such rows are learned nevertheless.
+/// forever.
+///
+/// While the account is empty and samples pay nothing, the arm is `resting`: rows are still learned, but the
+/// covariance stays as it is. Otherwise it would shrink along the row as 1/t, until in float only U still
+/// changed and D no longer did, and the directions that the row does not determine would grow. A target that
+/// changes at rest is thus followed within the memory, however long the rest has been.
 ///
 /// A moving arm forgets with λ as long as one row in `payback` contributes more than both limits. If the
 /// memory is much longer than p / (1024 ε) samples (8000 p in float, 4·10¹² p in double), no row does, and
@@ -56,6 +61,7 @@ class Forgetting {
     /// most the factor e.
     constexpr void restart() noexcept {
         account_ = active() ? capacity() : Scalar(0);
+        resting_ = 0;
         next_parameter_ = 0;
     }
 
@@ -67,8 +73,10 @@ class Forgetting {
         }
         using std::exp;
         using std::log;
-        account_ += ratio - 1 < least_paid_ ? Scalar(0) : payback_ * log(ratio);
+        const bool pays = !(ratio - 1 < least_paid_);
+        account_ += pays ? payback_ * log(ratio) : Scalar(0);
         account_ = account_ < capacity() ? account_ : capacity();
+        resting_ = !pays && account_ <= 0 ? 1 : 0;
         if (account_ >= price_) {
             account_ -= price_;
             return factor_;
@@ -77,6 +85,9 @@ class Forgetting {
         account_ = 0;
         return affordable;
     }
+
+    /// Returns whether the last sample paid nothing although the account was empty: the arm rests.
+    [[nodiscard]] constexpr bool resting() const noexcept { return resting_ != 0; }
 
     /// Maximum multiply-adds of `factor_after`.
     static constexpr int cost = 2 * (function_cost + 1);
@@ -91,6 +102,7 @@ class Forgetting {
     template <class Self, class Visitor>
     static constexpr void visit_state(Self& self, Visitor& visitor) noexcept {
         visitor.ranged(self.account_, Scalar(0), self.capacity());
+        visitor.ranged(self.resting_, 0, 1);
         visitor.ranged(self.next_parameter_, 0, static_cast<int>(self.parameters_) - 1);
     }
 
@@ -104,6 +116,7 @@ class Forgetting {
     Scalar least_paid_; ///< smallest φ'Pφ that pays
     Scalar price_ = 0;  ///< cost of applying the factor once, in nats
     Scalar account_ = 0;
+    int resting_ = 0; ///< 1 at rest
     int next_parameter_ = 0;
 };
 

@@ -80,7 +80,7 @@ class UdCovariance {
         for (int k = 0; k < outputs_; ++k) {
             innovation_[k] = target[k]; // the prediction is subtracted later, within the budget
         }
-        factor_.begin(row, noise_variance);
+        factor_.begin(row, noise_variance, forgetting_.resting());
         noise_variance_ = noise_variance;
         last_of_instant_ = last_of_instant ? 1 : 0;
         task_ = Task::innovation;

@@ -48,7 +48,7 @@ class UdFactor {
         clear(gain_);
         alpha_ = 1;
         panel_ = 0;
-        sweeping_ = 0;
+        sweep_ = Sweep::none;
     }
 
     /// Loads an initial factor: U above its diagonal by columns, and D.
@@ -72,7 +72,7 @@ class UdFactor {
                 total += f[c] * f[c] * diagonal_[width * b + c];
             }
         }
-        if (sweeping()) {
+        if (sweep_ == Sweep::fold) {
             const int done = width * panel_;
             const Scalar taken = detail::dot(gain_.data(), row, done < columns_ ? done : int{columns_});
             total += taken * taken / alpha_;
@@ -80,15 +80,17 @@ class UdFactor {
         return total;
     }
 
-    [[nodiscard]] bool sweeping() const noexcept { return sweeping_ != 0; }
+    [[nodiscard]] bool sweeping() const noexcept { return sweep_ != Sweep::none; }
 
-    /// Begins to fold in a row of p values, measured with this noise variance > 0.
-    void begin(const Scalar* row, Scalar noise_variance) noexcept {
+    /// Begins to fold in a row of p values, measured with this noise variance > 0; with `keep` the sweep
+    /// computes its `alpha` and `gain` only, and the covariance stays.
+    void begin(const Scalar* row, Scalar noise_variance, bool keep) noexcept {
         for (int j = 0; j < columns_; ++j) {
             row_[j] = row[j];
         }
         clear(gain_);
         begin_at(0, noise_variance);
+        sweep_ = keep ? Sweep::keep : Sweep::fold;
     }
 
     /// Begins a measurement of parameter i alone, whose noise is chosen such that its variance becomes
@@ -118,7 +120,7 @@ class UdFactor {
     }
 
     /// Ends a completed sweep: from now on the new covariance is used.
-    void close() noexcept { sweeping_ = 0; }
+    void close() noexcept { sweep_ = Sweep::none; }
 
     /// Returns the row of the present or last sweep, p values.
     [[nodiscard]] const Scalar* row() const noexcept { return row_.data(); }
@@ -221,10 +223,13 @@ class UdFactor {
         visitor.array(self.gain_.data(), self.columns_);
         visitor.positive_array(&self.alpha_, 1);
         visitor.ranged(self.panel_, 0, self.panel_count());
-        visitor.ranged(self.sweeping_, 0, 1);
+        visitor.ranged(self.sweep_, Sweep::none, Sweep::keep);
     }
 
   private:
+    /// What the present sweep does to the covariance.
+    enum class Sweep : int { none, fold, keep };
+
     static constexpr int width = detail::panel_width;
     static constexpr int rows = detail::block_rows<Scalar>;
     static constexpr int size = detail::block_size<Scalar>;
@@ -276,7 +281,7 @@ class UdFactor {
     void begin_at(int panel, Scalar noise_variance) noexcept {
         alpha_ = noise_variance;
         panel_ = panel;
-        sweeping_ = 1;
+        sweep_ = Sweep::fold;
     }
 
     /// Computes f = U'h for the four columns of panel b, with a row h of p values.
@@ -317,9 +322,9 @@ class UdFactor {
         for (int c = 0; c < width; ++c) {
             Scalar& d = diagonal_[width * b + c];
             factors.v[c] = d * f[c];
-            factors.mu[c] = -f[c] / alpha;
             const Scalar next = alpha + f[c] * factors.v[c];
-            d *= alpha / next;
+            factors.mu[c] = sweep_ == Sweep::fold ? -f[c] / alpha : Scalar(0);
+            d *= sweep_ == Sweep::fold ? alpha / next : Scalar(1);
             alpha = next;
         }
         alpha_ = alpha;
@@ -333,7 +338,7 @@ class UdFactor {
     Columns gain_;
     Scalar alpha_ = 1; ///< noise variance of the row + h'Ph over the completed columns
     int panel_ = 0;    ///< next panel to fold
-    int sweeping_ = 0;
+    Sweep sweep_ = Sweep::none;
 };
 
 } // namespace dfdyn
