@@ -148,4 +148,53 @@ TEST_CASE("a feed-forward of several forecasts costs at most what its cost funct
     }
 }
 
+TEST_CASE("in place of a nominal torque that is not finite the last one is used") {
+    ObservedRun run(0, 0);
+    run.go(0.1, 10, 10, [](int) { return 10; });
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        CHECK(run.forward.update({}, &bad)[0] == Approx(10));
+    }
+    const double good = 12;
+    CHECK(run.forward.update({}, &good)[0] == Approx(12));
+}
+
+TEST_CASE("settings outside their ranges give no torque") {
+    const double nominal = 10;
+    const auto torque_with = [&](const Forward::Settings& wrong) {
+        ToldLearner learner;
+        Forward forward(learner, wrong);
+        CHECK_FALSE(forward.settings_valid());
+        constexpr double start = 0;
+        forward.begin(0, &start);
+        double largest = 0;
+        for (int tick = 0; tick < 5000; ++tick) {
+            largest = std::max(largest, std::abs(forward.update({}, &nominal)[0]));
+            forward.commanded(&nominal);
+            forward.measured(0, &start, &nominal);
+        }
+        return largest;
+    };
+    const auto with = [](auto change) {
+        Forward::Settings wrong = settings;
+        change(wrong);
+        return wrong;
+    };
+    for (const double value :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1.0}) {
+        CAPTURE(value);
+        CHECK(torque_with(with([&](auto& wrong) { wrong.limit[0] = value; })) == 0);
+        CHECK(torque_with(with([&](auto& wrong) { wrong.cap[0] = value; })) == 0);
+        CHECK(torque_with(with([&](auto& wrong) { wrong.rate[0] = value; })) == 0);
+        CHECK(torque_with(with([&](auto& wrong) { wrong.rise_s = value; })) == 0);
+        CHECK(torque_with(with([&](auto& wrong) { wrong.fall_s = value; })) == 0);
+        CHECK(torque_with(with([&](auto& wrong) { wrong.memory_s = value; })) == 0);
+        CHECK(torque_with(with([&](auto& wrong) { wrong.slow_share = value; })) == 0);
+        CHECK(torque_with(with([&](auto& wrong) { wrong.bandwidth[0] = value; })) == 0);
+        CHECK(torque_with(with([&](auto& wrong) { wrong.observer_limit[0] = value; })) == 0);
+    }
+    CHECK(torque_with(with([](auto& wrong) { wrong.ticks_per_sample = 0; })) == 0);
+    CHECK(torque_with(with([](auto& wrong) { wrong.period_ns = 0; })) == 0);
+}
+
 } // namespace feed_forward_errors_test

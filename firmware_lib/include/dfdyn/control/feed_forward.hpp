@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/control/feed_forward_settings.hpp"
 #include "dfdyn/control/reference.hpp"
 #include "dfdyn/core/strict_math.hpp"
 #include "dfdyn/forecast_combination.hpp"
@@ -70,22 +71,7 @@ class FeedForward {
     /// Number of forecasts of the learner, each with n torques.
     static constexpr int forecasts = Learner::forecasts;
 
-    /// Limits and times. A value outside its range is not detected.
-    struct Settings {
-        std::int64_t period_ns;      ///< control period, > 0
-        int ticks_per_sample;        ///< control ticks per sample period of the model, ≥ 1
-        Torques limit;               ///< of each joint's torque, N·m, > 0
-        Torques cap;                 ///< of the learned part beyond the nominal torque, N·m, ≥ 0
-        Torques rate;                ///< of change of the learned part, N·m/s, > 0
-        Scalar rise_s = Scalar(0.5); ///< time in which the learned share rises from 0 to 1, s, > 0
-        Scalar fall_s = Scalar(0.2); ///< time in which it falls from 1 to 0, s, > 0
-        Scalar memory_s = 1;         ///< memory of the comparison, ≥ one sample period
-        /// Weight of the error that the observer takes over, 0 … 1. Chosen on the iCub's arm with tripled
-        /// friction and on motions of both arms that stop and go: 0 suits these, 1 the former.
-        Scalar slow_share = Scalar(0.3);
-        Torques bandwidth{};      ///< of the disturbance observer, rad/s, ≥ 0; 0: none
-        Torques observer_limit{}; ///< of its estimate, N·m, ≥ 0; 0: it takes over nothing
-    };
+    using Settings = FeedForwardSettings<Scalar, n>; ///< limits and times
 
     /// Ticks by which the interpolation leads. A command is held for a tick, so on average it acts half a
     /// tick late. The torque that was learned with a position had also been held before that position was
@@ -93,22 +79,26 @@ class FeedForward {
     static constexpr Scalar lead = 1;
 
     /// Refers to `learner`, which must outlive this object; copies `settings`. Call `begin` before the first
-    /// `update`.
+    /// `update`. Settings outside their ranges give no torque at all: see `settings_valid`.
     explicit FeedForward(Learner& learner, const Settings& settings) noexcept
         : learner_(&learner), joints_(learner.output_count()), forecast_count_(learner.forecast_count()),
-          settings_(settings),
-          judged_for_(std::max(1, static_cast<int>(settings.memory_s / sample_period_s(settings)))),
+          settings_valid_(settings.valid(joints_)),
+          settings_(settings_valid_ ? settings : Settings::no_torque(joints_)),
+          judged_for_(std::max(1, static_cast<int>(settings_.memory_s / settings_.sample_period_s()))),
           combination_(extent<sum(forecasts, 1)>(forecast_count_ + 1), joints_,
-                       settings.memory_s / sample_period_s(settings)),
+                       settings_.memory_s / settings_.sample_period_s()),
           compared_(Compared::zeros(extent<product(sum(forecasts, 1), n)>((forecast_count_ + 1) * joints_))),
           slow_(compared_), error_(compared_), followed_(Torques::zeros(joints_)),
           from_(Forecasts::zeros(extent<product(forecasts, n)>(forecast_count_ * joints_))), to_(from_),
           mix_(from_), ahead_(Torques::zeros(joints_)), share_(ahead_), part_(ahead_), torque_(ahead_),
-          zero_(ahead_) {
+          nominal_(ahead_), zero_(ahead_) {
         for (int k = 0; k < joints_; ++k) {
-            followed_[k] = std::min(settings_.bandwidth[k] * sample_period_s(settings_), Scalar(1));
+            followed_[k] = std::min(settings_.bandwidth[k] * settings_.sample_period_s(), Scalar(1));
         }
     }
+
+    /// Returns whether all settings are finite and within their ranges. If not, torques and shares stay 0.
+    [[nodiscard]] bool settings_valid() const noexcept { return settings_valid_; }
 
     /// Starts a motion. The arm rests at `position` (n values, rad).
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
@@ -118,7 +108,7 @@ class FeedForward {
         combination_.restart();
         learner_->begin(time_ns, position);
         for (int k = 0; k < joints_; ++k) {
-            share_[k] = part_[k] = 0;
+            share_[k] = part_[k] = nominal_[k] = 0;
         }
         std::fill(mix_.begin(), mix_.end(), Scalar(1) / static_cast<Scalar>(int{forecast_count_}));
         std::fill(slow_.begin(), slow_.end(), Scalar(0));
@@ -132,7 +122,8 @@ class FeedForward {
     [[nodiscard]] bool enabled() const noexcept { return enabled_; }
 
     /// Returns the feed-forward torque of this tick, N·m, for the present `reference` and `nominal` torque (n
-    /// values, N·m; zeros without a model). A nominal torque that is NaN or infinite counts as 0.
+    /// values, N·m; zeros without a model). In place of a nominal torque that is NaN or infinite, the joint's
+    /// last finite one is used, because 0 would be a step; before the first one it is 0.
     const Torques& update(const Reference<Scalar, n>& reference, const Scalar* nominal) noexcept {
         const int since_knot = static_cast<int>(tick_++ % settings_.ticks_per_sample);
         if (since_knot == 0) {
@@ -142,7 +133,8 @@ class FeedForward {
                                         static_cast<Scalar>(settings_.ticks_per_sample),
                                     Scalar(1));
         for (int k = 0; k < joints_; ++k) {
-            const Scalar known_nominal = bounded(nominal[k], settings_.limit[k]);
+            nominal_[k] = std::isfinite(nominal[k]) ? nominal[k] : nominal_[k];
+            const Scalar known_nominal = bounded(nominal_[k], settings_.limit[k]);
             if (since_knot == 0) {
                 compared_[k] = known_nominal;
                 for (int i = k; i < from_.size(); i += joints_) {
@@ -182,8 +174,8 @@ class FeedForward {
 
     /// Passes the newest measured position (n values, rad) and the torque that was in effect at that time (n
     /// values, N·m); nullptr if unknown. Call it in every tick, after `update`: a sample is taken at each
-    /// knot, and learning continues between knots. `time_ns`: time of the measurement, a whole number of
-    /// control ticks after `begin`.
+    /// knot, and learning continues between knots. `time_ns`: stamp of the measurement, by the clock of
+    /// `begin`, with as much jitter as `SampleClock` allows.
     void measured(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
         if (at_knot_ && position != nullptr) {
             learner_->learn(time_ns, position, torque);
@@ -226,10 +218,6 @@ class FeedForward {
     using Compared = Storage<Scalar, product(sum(forecasts, 1), n)>;
     using Combination = ForecastCombination<Scalar, sum(forecasts, 1), n>;
 
-    static constexpr Scalar sample_period_s(const Settings& settings) noexcept {
-        return Scalar(1e-9) * static_cast<Scalar>(settings.period_ns) *
-               static_cast<Scalar>(settings.ticks_per_sample);
-    }
     [[nodiscard]] Scalar period_s() const noexcept {
         return Scalar(1e-9) * static_cast<Scalar>(settings_.period_ns);
     }
@@ -245,7 +233,7 @@ class FeedForward {
         was_compared_ = false;
         knot_ns_ += settings_.period_ns * settings_.ticks_per_sample;
         for (int k = 0; k < joints_; ++k) {
-            ahead_[k] = position_after(reference, k, sample_period_s(settings_));
+            ahead_[k] = position_after(reference, k, settings_.sample_period_s());
         }
         from_ = to_;
         known_ = next_known_;
@@ -325,6 +313,7 @@ class FeedForward {
     Learner* learner_;
     [[no_unique_address]] Extent<n> joints_;
     [[no_unique_address]] Extent<forecasts> forecast_count_;
+    bool settings_valid_;
     Settings settings_;
     int judged_for_; ///< knots with a comparison until the learner is used
     Combination combination_;
@@ -335,6 +324,7 @@ class FeedForward {
     Forecasts mix_;         ///< shares of the forecasts in the learned part
     Torques ahead_;
     Torques share_, part_, torque_;
+    Torques nominal_; ///< the last finite one
     Torques zero_;
     std::int64_t knot_ns_ = 0; ///< time of the next knot
     std::int64_t tick_ = 0;
