@@ -9,10 +9,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
-/// A controller to copy and adapt, with the interface of ros2_control: `activate`, then `update` in each
+/// Tells new measurements by their stamps. A stamp that is not within `longest_gap_ns` after the last new one
+/// is not new, but `agreeing` in a row that follow each other are: the clock was set, or measurements were
+/// missing. One stray stamp therefore costs one measurement.
+class StampClock {
+  public:
+    static constexpr std::uint64_t longest_gap_ns = 100'000'000;
+    static constexpr int agreeing = 3;
+
+    /// The next measurement is new if its stamp is this one or follows it.
+    void restart(std::int64_t time_ns) {
+        accepted_ns_ = last_ns_ = time_ns - 1;
+        in_a_row_ = 0;
+    }
+
+    /// Returns whether a measurement with this stamp is new.
+    bool advances(std::int64_t time_ns) {
+        in_a_row_ = follows(time_ns, last_ns_) ? std::min(in_a_row_ + 1, agreeing) : 1;
+        last_ns_ = time_ns;
+        const bool advances = follows(time_ns, accepted_ns_) || in_a_row_ == agreeing;
+        accepted_ns_ = advances ? time_ns : accepted_ns_;
+        return advances;
+    }
+
+  private:
+    /// The difference of any two stamps is correct as an unsigned number.
+    static bool follows(std::int64_t time_ns, std::int64_t before_ns) {
+        return time_ns > before_ns &&
+               static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(before_ns) <= longest_gap_ns;
+    }
+
+    std::int64_t accepted_ns_ = 0; // the last new stamp
+    std::int64_t last_ns_ = 0;     // the last stamp
+    int in_a_row_ = 0;             // stamps that follow each other, at most `agreeing`
+};
+
+/// A controller to copy and adapt. It is called like one of ros2_control: `activate`, then `update` in each
 /// period. It contains feedback, the learned feed-forward and an observer for the remaining disturbance.
 /// Efforts are in the unit of the model's outputs, here A. The period is fixed at compile time. No operating
 /// system, no heap, bounded time per tick.
@@ -69,7 +106,7 @@ class JointController {
         forward_.begin(state.time_ns, state.position.data());
         observer_.restart();
         effort_ = excess_ = correction_ = all(0);
-        time_ns_ = state.time_ns - 1;
+        clock_.restart(state.time_ns);
         missed_ = {};
         recovering_ = {};
         limited_ = false;
@@ -110,14 +147,18 @@ class JointController {
     /// Returns the feed-forward: its share, its learned part, and the learner with its counters.
     [[nodiscard]] const Forward& forward() const { return forward_; }
 
+    /// Returns a writer of what has been learned, for example to flash, piece by piece between ticks.
+    [[nodiscard]] auto snapshot_writer() { return learned_.snapshot_writer(); }
+    /// Restores what had been learned. Call it before `activate`. A faulty snapshot changes nothing.
+    dfdyn::SnapshotResult restore(std::span<const std::byte> snapshot) { return learned_.restore(snapshot); }
+
   private:
     static Efforts all(float value) { return {{value, value, value, value, value, value}}; }
 
     /// Computes the corrections. Returns whether all joints have a new measurement and none is limited in
     /// its rate.
     bool correct(const State& state, const Reference& reference) {
-        const bool advanced = state.time_ns > time_ns_;
-        time_ns_ = std::max(time_ns_, state.time_ns);
+        const bool advanced = clock_.advances(state.time_ns);
         Efforts error_rate, feedback;
         for (int k = 0; k < joints; ++k) {
             error_rate[k] = reference.velocity[k] - state.velocity[k];
@@ -162,7 +203,7 @@ class JointController {
 
     Efforts effort_{}, excess_{};
     Efforts correction_{}; // of feedback and observer
-    std::int64_t time_ns_ = 0;
+    StampClock clock_;
     dfdyn::Storage<int, joints> missed_{};      // ticks since the last measurement
     dfdyn::Storage<bool, joints> recovering_{}; // the correction is limited in its rate
     bool limited_ = false; // whether the last effort is not the one that the motion needs

@@ -7,6 +7,8 @@
 #include <sched.h>
 #include <sys/mman.h>
 
+#include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -25,12 +27,24 @@ void become_real_time() {
     }
 }
 
-void sleep_until(timespec& due) {
-    constexpr long second_ns = 1'000'000'000;
+constexpr std::int64_t second_ns = 1'000'000'000;
+
+std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * second_ns + time.tv_nsec; }
+
+/// Sleeps until the next period. Returns false after a tick that took longer than its period. The ticks that
+/// were missed are not made up: in a burst, the reference would run faster than the arm.
+bool sleep_for_period(timespec& due) {
     due.tv_nsec += JointController::period_ns;
     due.tv_sec += due.tv_nsec / second_ns;
     due.tv_nsec %= second_ns;
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr);
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
+        // a signal: sleep on, or this tick would begin early
+    }
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    const bool in_time = nanoseconds(now) - nanoseconds(due) < JointController::period_ns;
+    due = in_time ? due : now;
+    return in_time;
 }
 
 } // namespace
@@ -45,11 +59,10 @@ int main(int count, char** arguments) {
     clock_gettime(CLOCK_MONOTONIC, &due);
     float first = 0;
     float last = 0;
+    long overruns = 0;
     for (long second = 0; second < seconds; ++second) {
         for (int i = 0; i < ticks_per_second; ++i) {
-            if (timed) {
-                sleep_until(due);
-            }
+            overruns += timed && !sleep_for_period(due) ? 1 : 0;
             loop.tick();
         }
         last = loop.take_error(ticks_per_second);
@@ -58,6 +71,7 @@ int main(int count, char** arguments) {
                     1e3 * static_cast<double>(last),
                     static_cast<double>(loop.controller().forward().share()[1]));
     }
+    std::printf("%ld ticks began a period late or more\n", overruns);
     const bool learned = last < first / 2 && loop.controller().forward().share()[1] > 0.5F;
     return learned || seconds < seconds_without_clock ? 0 : 1;
 }

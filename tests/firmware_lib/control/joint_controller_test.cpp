@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace joint_controller_test {
 
@@ -87,6 +91,56 @@ TEST_CASE("a sample that is repeated is not a new measurement") {
     rig.go(JointController::hold_ticks, [&old](JointController::State& state) { state = old; });
     CHECK(rig.correction[joint] == Approx(last[joint]).margin(1e-4));
     CHECK(rig.controller.ticks_without_sample(0) == JointController::hold_ticks);
+}
+
+TEST_CASE("one stamp far from all others costs one measurement") {
+    constexpr std::int64_t hour_ns = 3'600'000'000'000;
+    for (const std::int64_t away : {hour_ns, -hour_ns, std::numeric_limits<std::int64_t>::max() / 2}) {
+        CAPTURE(away);
+        Rig rig;
+        rig.go(700);
+        rig.go(1, [away](JointController::State& state) { state.time_ns += away; });
+        CHECK(rig.controller.ticks_without_sample(joint) == 1);
+        rig.go(1);
+        CHECK(rig.controller.ticks_without_sample(joint) == 0);
+    }
+}
+
+TEST_CASE("a clock that is set is followed within a few measurements") {
+    constexpr std::int64_t hour_ns = 3'600'000'000'000;
+    for (const std::int64_t away : {hour_ns, -hour_ns}) {
+        CAPTURE(away);
+        Rig rig;
+        rig.go(700);
+        const auto set = [away](JointController::State& state) { state.time_ns += away; };
+        rig.go(StampClock::agreeing - 1, set);
+        CHECK(rig.controller.ticks_without_sample(joint) == StampClock::agreeing - 1);
+        rig.go(1, set);
+        CHECK(rig.controller.ticks_without_sample(joint) == 0);
+        CHECK(rig.largest_change < largest_step);
+    }
+}
+
+TEST_CASE("what a controller has learned is restored by the next one") {
+    Rig rig;
+    rig.go(3000);
+    std::vector<std::byte> snapshot(JointController::Learned::snapshot_capacity);
+    auto writer = rig.controller.snapshot_writer();
+    constexpr std::size_t bytes_per_tick = 64;
+    for (int i = 0; i < 10'000 && writer.result() == dfdyn::SnapshotResult::in_progress; ++i) {
+        static_cast<void>(writer.step(snapshot, bytes_per_tick));
+        rig.go(1); // as an interrupt between two pieces
+    }
+    REQUIRE(writer.result() == dfdyn::SnapshotResult::ok);
+    Rig next;
+    const std::span<const std::byte> written(snapshot.data(), writer.bytes());
+    CHECK(next.controller.restore(written.first(written.size() - 1)) != dfdyn::SnapshotResult::ok);
+    CHECK(next.controller.restore(written) == dfdyn::SnapshotResult::ok);
+    std::vector<std::byte> again(snapshot.size());
+    REQUIRE(next.controller.forward().learner().snapshot(again) == dfdyn::SnapshotResult::ok);
+    again.resize(writer.bytes());
+    snapshot.resize(writer.bytes());
+    CHECK(again == snapshot);
 }
 
 } // namespace joint_controller_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/core/snapshot_writer.hpp"
 #include "dfdyn/estimator.hpp"
 
 #include <algorithm>
@@ -46,8 +47,8 @@ class LearnedTorque {
     /// Returns the number of forecasts, 1.
     [[nodiscard]] static constexpr Extent<forecasts> forecast_count() noexcept { return {}; }
 
-    /// Starts both windows as if the arm had rested at `position` (n values, rad) for a long time. What has
-    /// been learned stays.
+    /// Empties the measured motion's window, and fills the reference's as if it had rested at `position` (n
+    /// values, rad) until now. What has been learned stays.
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
         estimator_.restart_window();
         columns_.restart();
@@ -125,6 +126,11 @@ class LearnedTorque {
     /// See `Estimator::snapshot`.
     [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
         return estimator_.snapshot(buffer);
+    }
+    /// Returns a writer that takes a snapshot in pieces while an interrupt ticks: see `SnapshotWriter`.
+    [[nodiscard]] SnapshotWriter<Estimator>
+    snapshot_writer(std::uint32_t max_held_ticks = SnapshotWriter<Estimator>::default_held_ticks) noexcept {
+        return SnapshotWriter<Estimator>(estimator_, max_held_ticks);
     }
     /// See `Estimator::restore`. Restarts both windows; call `begin` next.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
