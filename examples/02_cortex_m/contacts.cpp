@@ -7,6 +7,7 @@
 #include "ur5_ticks.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace {
 
@@ -30,9 +31,13 @@ bool contact(const Estimator::Sample& sample) {
     const dfdyn::Budget budget{detector.suspected() ? 0 : Estimator::cost().learn};
     const auto estimate = estimator.tick(sample, budget);
     const std::uint32_t begin = instruction_counter();
-    if (estimate.status.predicted()) {
-        detector.tick(sample.time_ns, sample.position.data(), estimate.innovation.data(),
-                      estimate.prediction.data());
+    if (estimate.status.estimated() && sample.output_valid) {
+        // Not the innovation: it is 0 beyond the model's limit, as in a hard collision.
+        std::array<float, joints> error{};
+        for (int k = 0; k < joints; ++k) {
+            error[k] = sample.output[k] - estimate.prediction[k];
+        }
+        detector.tick(sample.time_ns, sample.position.data(), error.data(), estimate.prediction.data());
     } else {
         detector.interrupt();
     }

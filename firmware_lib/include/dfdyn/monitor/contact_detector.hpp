@@ -27,12 +27,17 @@ namespace dfdyn {
 /// detected. docs/guide/contacts.md lists the recordings that chose the constants. Use in each tick:
 ///
 ///     const auto estimate = estimator.tick(sample, budget);
-///     if (estimate.status.predicted() && measured) {
-///         detector.tick(sample.time_ns, sample.position.data(), error, prediction);
+///     if (estimate.status.estimated() && sample.output_valid) {
+///         for (int k = 0; k < joints; ++k) {
+///             error[k] = sample.output[k] - estimate.prediction[k];
+///         }
+///         detector.tick(sample.time_ns, sample.position.data(), error, estimate.prediction.data());
 ///     } else {
 ///         detector.interrupt();
 ///     }
 ///
+/// Not with `Estimate::innovation`, which is 0 for an output beyond the model's limit: the hardest
+/// collisions. If it is interrupted during a contact, the present push becomes the baseline afterwards.
 /// `joints` positions, errors and predictions, in the same order. No heap. Cost: `cost` per joint and tick,
 /// and four exponentials. Memory: 18 numbers per joint.
 template <class Scalar, int joints>
@@ -91,6 +96,7 @@ class ContactDetector {
     void interrupt() noexcept {
         running_ = false;
         contact_ = false;
+        excess_ = 0; // nothing is suspected of what is not compared, or the learner would wait for ever
     }
 
     /// Returns whether errors are compared: not after an interruption.
