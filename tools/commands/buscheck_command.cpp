@@ -10,6 +10,7 @@
 #include "tools/can/recognition/recognised_bus.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
+#include "tools/commands/options/options.hpp"
 #include "tools/commands/options/stop_signal.hpp"
 #include "tools/commands/options/value_checks.hpp"
 
@@ -105,6 +106,7 @@ int run(const BusCheckOptions& options) {
     if (!options.bus.empty() && !options.draft.empty()) {
         throw InputError("buscheck: expected --bus or -o, which writes a draft of it, found both");
     }
+    check_outputs({options.draft}, {options.log});
     BusCheck check(options.bus.empty() ? std::nullopt : std::optional(read_bus_description(options.bus)));
     TrafficRecorder recorder;
     options.log.empty() ? check_interface(options, check, recorder) : check_log(options, check, recorder);

@@ -47,6 +47,15 @@ struct DiagnoseOptions {
     std::filesystem::path page() const { return folder / "report.html"; }
     std::filesystem::path model() const { return folder / "extended_model.json"; }
     std::filesystem::path curves() const { return folder / "curves.csv"; }
+
+    /// Returns all files that a run writes, or removes because it no longer has them.
+    std::vector<std::filesystem::path> all_files() const {
+        std::vector<std::filesystem::path> files{findings(), page(), model(), curves(), header};
+        for (const RobotFormat& format : robot_formats()) {
+            files.push_back(folder / format.file);
+        }
+        return files;
+    }
 };
 
 void check_torque_constants(const DiagnoseOptions& options, OutputKind outputs, std::size_t joints) {
@@ -156,10 +165,7 @@ void check_folders(const DiagnoseOptions& options) {
 
 int run(const DiagnoseOptions& options) {
     const JsonOutput output(options.json);
-    std::vector<std::filesystem::path> inputs = options.recordings.logs;
-    inputs.push_back(options.robot.urdf);
-    check_distinct({options.findings(), options.page(), options.model(), options.curves(), options.header},
-                   std::move(inputs));
+    check_distinct(options.all_files(), options.recordings.with({options.robot.urdf}));
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     check_torque_constants(options, outputs, robot.joints.size());

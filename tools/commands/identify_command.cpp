@@ -94,9 +94,7 @@ void check_window(const ZeroPhaseWindow& window) {
 int run(const IdentifyOptions& options) {
     check_window(options.window);
     const JsonOutput output(options.json);
-    std::vector<std::filesystem::path> inputs = options.recordings.logs;
-    inputs.push_back(options.robot.urdf);
-    check_outputs({options.parameters}, std::move(inputs));
+    check_outputs({options.parameters}, options.recordings.with({options.robot.urdf}));
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     const std::vector<Recording> recordings = read_all(options, robot, outputs);

@@ -9,6 +9,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/options/json_output.hpp"
+#include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/commands/options/stop_signal.hpp"
 #include "tools/control/closed_loop.hpp"
@@ -38,6 +39,8 @@ struct LoopParts {
 };
 
 LoopParts read_parts(const LoopOptions& options) {
+    // A run may continue what it restores, and save it in the same place.
+    check_outputs({options.saved}, {options.robot, options.scenario, options.model, options.bus});
     LoopParts parts{read_scenario_robot(options.robot, options.scenario), {}, {}, {}};
     parts.scenario = read_scenario(options.scenario, parts.robot);
     if (!options.model.empty()) {
@@ -48,11 +51,9 @@ LoopParts read_parts(const LoopOptions& options) {
         const auto whole = std::as_bytes(std::span(bytes));
         parts.model->learned.assign(whole.begin(), whole.end());
         parts.model->learned_source = shown(options.restored);
-        make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
-                          &*parts.model); // throws unless it fits
     }
-    if (!options.saved.empty()) {
-        check_writable(options.saved);
+    if (parts.model) { // throws unless it fits: before the runs without it
+        make_control_loop(parts.robot, parts.scenario, shown(options.scenario), &*parts.model);
     }
     if (!options.bus.empty()) {
         parts.bus = read_bus_description(options.bus);

@@ -245,9 +245,8 @@ int exit_status(std::span<const ReplayedRecording> replayed, bool bus) {
 int run_replay_command(const ReplayOptions& options) {
     check_usage(options);
     const JsonOutput output(options.json);
-    std::vector<std::filesystem::path> inputs = options.recordings.logs;
-    inputs.insert(inputs.end(), options.models.begin(), options.models.end());
-    inputs.push_back(options.bus);
+    std::vector<std::filesystem::path> inputs = options.recordings.with(options.models);
+    inputs.insert(inputs.end(), {options.bus, options.monitor.robot.urdf});
     std::vector<std::filesystem::path> outputs{options.csv, options.report, options.can.record,
                                                options.monitor.file, options.contacts.file};
     check_outputs(outputs, inputs);

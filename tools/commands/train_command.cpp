@@ -248,7 +248,7 @@ void fit_rigid_body_of(TrainedModel& model, const ModelTraining& training,
 
 int run(const TrainOptions& options) {
     const JsonOutput output(options.json);
-    check_outputs({options.model, options.header}, options.recordings.logs);
+    check_outputs({options.model, options.header}, options.recordings.with({options.robot.urdf}));
     const OutputKind outputs = parse_output_kind(options.outputs);
     ModelTraining training = model_training(options, outputs);
     note_ignored(options, outputs);

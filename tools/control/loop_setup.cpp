@@ -225,6 +225,7 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
     LoopConfig config = loop_config(robot, scenario, source, make()->next().position, delay_ticks, limits);
     std::optional<LearnedFeedForward> model;
     if (learned != nullptr) {
+        check_loop_model(learned->model, static_cast<int>(robot.joints.size()), learned->source);
         config.knot_ticks = knot_ticks(config.period_s, learned->model.sample_period_s, learned->source);
         model.emplace(learned_part(robot, *learned, config.knot_ticks, limits));
     }

@@ -7,6 +7,7 @@
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
 
+#include <algorithm>
 #include <iostream>
 
 namespace dfdyn::tools {
@@ -50,7 +51,19 @@ void RecordingOptions::add_to(CLI::App& command) {
         ->type_name("q=deg,t=ns,...");
 }
 
+void RecordingOptions::check_different() const {
+    for (auto log = logs.begin(); log != logs.end(); ++log) {
+        const auto same = [&](const std::filesystem::path& other) {
+            return place_in_file_system(other) == place_in_file_system(*log);
+        };
+        if (std::any_of(logs.begin(), log, same)) {
+            throw InputError("--log: expected each recording once, found " + shown(*log) + " twice");
+        }
+    }
+}
+
 std::vector<Recording> RecordingOptions::read(ReadOptions options) const {
+    check_different();
     options.rows = parse_row_range(rows);
     options.skip_bad_rows = skip_bad_rows;
     options.columns = parse_column_patterns(columns);
@@ -69,6 +82,13 @@ std::vector<Recording> RecordingOptions::read(ReadOptions options) const {
         }
     }
     return recordings;
+}
+
+std::vector<std::filesystem::path>
+RecordingOptions::with(const std::vector<std::filesystem::path>& others) const {
+    std::vector<std::filesystem::path> files = logs;
+    files.insert(files.end(), others.begin(), others.end());
+    return files;
 }
 
 void check_distinct(const std::vector<std::filesystem::path>& outputs,

@@ -28,9 +28,16 @@ struct RecordingOptions {
         return rows != ":" || skip_bad_rows || !columns.empty() || !units.empty() || !topics.empty();
     }
 
+    /// Returns the files of the recordings, and `others`: what no output may replace.
+    std::vector<std::filesystem::path> with(const std::vector<std::filesystem::path>& others) const;
+
     /// Reads all recordings with the columns of `options`. Reports ignored columns, assumptions and skipped
     /// rows once on stderr.
     std::vector<Recording> read(ReadOptions options) const;
+
+  private:
+    /// Throws InputError if a recording is given twice: its noise would count as known.
+    void check_different() const;
 };
 
 /// Throws InputError if two outputs, or an output and an input, are the same file. Empty paths are ignored.

@@ -17,19 +17,6 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-void check_model(const TrainedModel& model, int joints, const std::string& source) {
-    const std::vector<std::string> expected =
-        output_names(OutputKind::joint_torque, static_cast<std::size_t>(joints));
-    if (model.joints != joints || model.outputs.names != expected) {
-        throw InputError(source + ": expected a model of the outputs " + listed(expected) +
-                         ", found one of " + listed(model.outputs.names));
-    }
-    if (needs_derivatives(model)) {
-        throw InputError(source + ": expected a model of positions alone, found one that needs measured "
-                                  "derivatives (input STD)");
-    }
-}
-
 /// Returns the model with a shorter patience, so that a changed arm is learned quickly. The share of the
 /// learned torque is evaluated every second, so learning a contact of half a second has little influence.
 TrainedModel impatient(TrainedModel model) {
@@ -68,12 +55,25 @@ bool learns(const Status& status) {
 
 } // namespace
 
+void check_loop_model(const TrainedModel& model, int joints, const std::string& source) {
+    const std::vector<std::string> expected =
+        output_names(OutputKind::joint_torque, static_cast<std::size_t>(joints));
+    if (model.joints != joints || model.outputs.names != expected) {
+        throw InputError(source + ": expected a model of the outputs " + listed(expected) +
+                         ", found one of " + listed(model.outputs.names));
+    }
+    if (needs_derivatives(model)) {
+        throw InputError(source + ": expected a model of positions alone, found one that needs measured "
+                                  "derivatives (input STD)");
+    }
+}
+
 LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
                                        const std::string& source, const MonitorSetup* monitor,
                                        const ContactModel* contact)
     : sample_period_ns_(std::llround(model.sample_period_s * 1e9)),
       lags_(std::max(model.input.lags, model.physics ? model.physics->motion.lags : 0)) {
-    check_model(model, joints, source);
+    check_loop_model(model, joints, source);
     std::unique_ptr<RuntimeEstimator>& estimator = learner_.estimator;
     estimator = make_estimator(impatient(model), from_prior);
     if (monitor != nullptr) {

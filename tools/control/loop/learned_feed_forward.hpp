@@ -25,6 +25,10 @@ struct LearningCounters {
     std::uint64_t reference_unknown = 0; ///< references without a prediction
 };
 
+/// Throws InputError, naming `source`, for a model that does not describe the torques of `joints` joints, or
+/// that needs measured derivatives.
+void check_loop_model(const TrainedModel& model, int joints, const std::string& source);
+
 /// A learned model of the joint torques as feed-forward. It learns from windows of measured positions and is
 /// evaluated on a window of the reference. Two estimators of the same model are used: one learns, and the
 /// other always has the first one's weights. The command therefore depends on the reference, without the
@@ -48,8 +52,7 @@ class LearnedFeedForward {
 
     /// `from_prior`: ignores the initial weights from training. `ticks`: control ticks per sample. `monitor`:
     /// monitors the learner; null for none. `contact`: limits for the detection of contacts, in which nothing
-    /// is learned; null for none. Throws InputError, naming `source`, for a model that does not describe the
-    /// torques of `joints` joints, or that needs measured derivatives.
+    /// is learned; null for none. Throws InputError as `check_loop_model`.
     LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
                        const std::string& source, const MonitorSetup* monitor = nullptr,
                        const ContactModel* contact = nullptr);
