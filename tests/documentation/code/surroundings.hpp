@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the C++ of the documentation's pages takes for granted: the user's functions, and a model of his arm.
+#pragma once
+
+#include "dfdyn/control/disturbance_observer.hpp"
+#include "dfdyn/control/feed_forward.hpp"
+#include "dfdyn/control/learned_torque.hpp"
+#include "dfdyn/dfdyn.hpp"
+#include "examples/ur5/ur5_model.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace robot_model = ur5_model;
+namespace arm = ur5_model;
+
+using Estimator = dfdyn::Estimator<ur5_model::Model>;
+
+inline dfdyn::Sample<float, 6, 6> sample;
+inline constexpr dfdyn::Budget budget{1000};
+void report(const char* name);
+
+using Six = dfdyn::Storage<float, 6>;
+inline constexpr Six ten{{10, 10, 10, 10, 10, 10}};
+inline constexpr dfdyn::FeedForwardSettings<float, 6> forward_settings{
+    .period_ns = 1'000'000, .ticks_per_sample = 8, .limit = ten, .cap = ten, .rate = ten};
+std::int64_t clock_ns();
+const float* encoders_rad();
+dfdyn::Reference<float, 6> reference();
+const float* nominal_effort();
+const float* feedback();
+bool send(const Six& feed, const float* feedback, Six& effort);
