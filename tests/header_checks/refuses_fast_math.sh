@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # refuses_fast_math.sh COMPILER INCLUDE_DIRS HEADER...: fails if a translation unit that includes one of these headers compiles
-# with flags under which the library would silently be wrong (dfdyn/core/strict_math.hpp). INCLUDE_DIRS are the folders of the headers,
-# separated by colons. A header without floating-point numbers need not be rejected.
+# with flags under which the library would silently be wrong, with an older language standard or an older g++
+# (dfdyn/core/strict_math.hpp). INCLUDE_DIRS are the folders of the headers, separated by colons. A header without floating-point
+# numbers need not be rejected.
 set -euo pipefail
 
 compiler=$1
@@ -23,7 +24,7 @@ expect() {
     local wanted=$1 outcome=accepts said
     shift
     said=$(message "$@")
-    if grep -q 'error.*dfdyn does not work with.*Compile this file without' <<<"$said"; then
+    if grep -qE 'error.*dfdyn (does not work with.*Compile this file without|needs (g\+\+ 12|C\+\+20))' <<<"$said"; then
         outcome=refuses
     elif [[ -n $said ]]; then
         outcome="says otherwise of"
@@ -40,9 +41,11 @@ expect accepts -ffast-math -fno-fast-math
 expect refuses -ffast-math
 expect refuses -Ofast
 expect refuses -O1 -ffinite-math-only
-if ! "$compiler" --version | grep -q clang; then # clang has no macro for it
+expect refuses -std=c++17
+if ! "$compiler" --version | grep -q clang; then # clang has no macro for these, and no version is refused
     expect refuses -ffast-math -fno-finite-math-only
     expect refuses -funsafe-math-optimizations
+    expect refuses -U__GNUC__ -D__GNUC__=11
 fi
 
 # Every header includes the check through headers of this project.

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Rejects compiler flags under which the library would silently be wrong. Every entry header includes this
-// file.
-//
+// Rejects compilers that cannot compile the library, and flags under which it would silently be wrong. Every
+// entry header includes this file.
+#if !defined(__clang__) && (!defined(__GNUC__) || __GNUC__ < 12)
+#error                                                                                                       \
+    "dfdyn needs g++ 12 or later, or clang (tested: 14): it uses their vector types and __builtin_shufflevector"
+#elif __cplusplus < 202002L
+#error "dfdyn needs C++20: compile with -std=c++20 or -std=gnu++20"
+#endif
+
 // With finite-math flags the compiler assumes that every number is finite and removes the tests that keep NaN
 // and infinity out of the state: one faulty sample is learned, and every later prediction is NaN. With flags
 // that reorder sums, the reduction of a cosine's argument by multiples of π/2 (W. J. Cody and W. Waite, 1980)
