@@ -11,8 +11,8 @@ namespace {
 using Estimator = dfdyn::Estimator<ur5_model::Model>;
 
 Estimator estimator(ur5_model::constants); // the whole state; no heap
-constexpr dfdyn::Budget budget{Estimator::cost().learn /
-                               2}; // per tick: a sample is learned in two or three ticks
+/// Multiply-adds of learning per tick: a sample is learned in two or three ticks.
+constexpr dfdyn::Budget budget{Estimator::cost().learn / 2};
 static_assert(budget.affords(Estimator::cost().largest_step), "a smaller budget would never learn anything");
 
 } // namespace

@@ -8,9 +8,10 @@
 
 namespace dfdyn {
 
-/// Result of one tick. Without a prediction the value is 0, so that feeding it forward unchecked adds no
-/// torque, and its standard deviation is infinite. A prediction beyond the model's `prediction_limit` is
-/// replaced by that limit, and its standard deviation is at least the distance between the two.
+/// Result of one tick. Never feed the prediction forward: it is the torque of the measured motion (positive
+/// feedback); use `FeedForward`. Without a prediction it is 0, and its standard deviation is infinite. A
+/// prediction beyond the model's `prediction_limit` is replaced by that limit, and its standard deviation is
+/// at least the distance between the two.
 template <class Scalar, int m>
 struct Estimate {
     Storage<Scalar, m> prediction;         ///< in the output's unit, computed before the sample is learned

@@ -89,8 +89,8 @@ class Estimator {
         counters_ = {};
     }
 
-    /// The arm is known to have changed: the next tick with a budget begins to take the covariance back to
-    /// the prior's, so that the weights, which stay, soon follow what is measured from now on.
+    /// Requests a reset of the covariance to the prior's, after a change of the arm. It begins in the next
+    /// tick with a budget. The weights stay, and soon follow later measurements.
     void relearn() noexcept { gate_.report_change(); }
 
     /// Begins a new recording or motion: the window and the clock start again, what has been learned stays.

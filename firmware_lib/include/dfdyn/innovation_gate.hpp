@@ -78,10 +78,10 @@ class InnovationGate {
         return contradiction > Scalar(rejection) ? Scalar(0) : fourth;
     }
 
-    /// Whether the arm has been found to have changed and `take_change` has not reported it yet.
+    /// Returns whether the arm has been found to have changed and `take_change` has not reported it yet.
     [[nodiscard]] constexpr bool change_pending() const noexcept { return change_pending_; }
 
-    /// The arm is known to have changed, from elsewhere: goes on as if it had been found here.
+    /// Registers a change of the arm that was found elsewhere, as if the gate had found it.
     constexpr void report_change() noexcept {
         change_pending_ = true;
         changed_ = patience_ > 0;

@@ -69,7 +69,7 @@ struct Model {
         [[nodiscard]] constexpr Extent<inputs> input_count() const noexcept {
             return extent<inputs>(joint_count * features_per_joint);
         }
-        /// Returns the number of features, 2d.
+        /// Returns the number of columns, 2d.
         [[nodiscard]] constexpr Extent<columns> column_count() const noexcept {
             return extent<columns>(2 * feature_count);
         }

@@ -40,17 +40,15 @@ inline constexpr int function_cost = 30;
 /// Cost of the parts of a tick, in multiply-adds. Execution time is proportional to these numbers; the factor
 /// depends on the machine.
 struct Cost {
-    std::int64_t
-        /// Input, features, weights and estimate: maximum over all ticks, reached with a measurement.
-        predict;
+    /// Input, features, weights and estimate: maximum over all ticks, reached with a measurement.
+    std::int64_t predict;
     /// A separate computation of the variance, in ticks that do not learn their own sample at once: maximum,
     /// reached while an earlier sample is being learned.
     std::int64_t variance;
     std::int64_t learn;  ///< learning one sample, without forgetting
     std::int64_t forget; ///< maximum that forgetting adds to `learn`
-    std::int64_t
-        /// Largest indivisible part of learning. With a smaller budget learning may never finish.
-        largest_step;
+    /// Largest indivisible part of learning. With a smaller budget learning may never finish.
+    std::int64_t largest_step;
     /// Resetting the covariance after a change of the arm, within the budget and before the next sample is
     /// learned.
     std::int64_t reset_covariance = 0;

@@ -17,9 +17,8 @@ namespace dfdyn {
 /// Result of writing or reading a snapshot. Every result but `ok` means that nothing was changed.
 enum class SnapshotResult : std::uint8_t {
     ok = 0,
-    wrong_size =
-        /// The buffer is smaller than the snapshot, or the snapshot has another size than this state.
-    1,
+    /// The buffer is smaller than the snapshot, or the snapshot has another size than this state.
+    wrong_size = 1,
     /// The magic number is missing, or the byte order differs.
     not_a_snapshot = 2,
     wrong_version = 3, ///< written by another version of the format

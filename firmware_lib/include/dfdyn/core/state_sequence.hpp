@@ -106,9 +106,8 @@ class StateSequence {
     /// The hold whose ticks are counted; used by the ticking context only.
     std::uint32_t held_request_ = 0;
     std::uint32_t held_ticks_ = 0; ///< ticks of that hold so far
-    std::atomic<std::uint32_t> request_ =
-        /// Number of the requested hold, or 0; written by the copying context.
-        0;
+    /// Number of the requested hold, or 0; written by the copying context.
+    std::atomic<std::uint32_t> request_ = 0;
     std::atomic<std::uint32_t> max_ticks_ = 0;
     std::uint32_t last_request_ = 0; ///< used by the copying context only
 };

@@ -35,8 +35,8 @@ enum class Reason : std::uint8_t {
     learning_held = 8,
 
     /// The model predicted beyond its `prediction_limit`: the estimate is the limit, and its standard
-    /// deviation is at least the distance to the model's own prediction. Learning continues. Do not feed the
-    /// estimate forward. Remedy: train on a recording that contains this motion.
+    /// deviation is at least the distance to the model's own prediction. Learning continues. Remedy: train on
+    /// a recording that contains this motion.
     prediction_bounded = 9,
 
     /// A position is NaN or infinite.

@@ -28,10 +28,8 @@ inline constexpr int departure_count = 6;
 /// - force, per axis of the base and sign: a force at the tool, over all outputs.
 /// Whitened innovations are clamped at three standard deviations. `shift_size` and `force_size` are the sizes
 /// of the alternatives, in standard deviations of a block. One more sum is for short and large disturbances:
-/// - burst: log(e²/2²) of each whitened innovation |e| > 2, over all outputs, at most `burst_limit` per
-/// block,
-///   minus 2 per block.
-/// So no single block raises an alarm.
+/// - burst: log(e²/2²) of each whitened innovation |e| > 2, over all outputs; minus 2 per block.
+/// A block adds at most `burst_limit` to it, so no single block raises an alarm.
 ///
 /// At standstill (lowest speed class, joint torques only) an innovation is evidence only beyond the range
 /// that stiction has shown in earlier standstills (`StandstillRange`): the excess of its level, or a larger

@@ -24,7 +24,7 @@ struct Observation {
     const Scalar* held_prediction;    ///< with delayed weights (`DelayedWeights`)
 };
 
-/// Geometry, time scales and the false-alarm rate of a monitor, which must not outlive them.
+/// Geometry, time scales and the false-alarm rate of a monitor. The constants must outlive the monitor.
 template <class Scalar, class Arm, int M>
 struct MonitorConstants {
     static constexpr int n = Arm::joints;       ///< joints
