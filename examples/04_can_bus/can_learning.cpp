@@ -17,7 +17,7 @@
 
 namespace {
 
-using namespace dfdyn::hal;
+namespace hal = dfdyn::hal;
 
 constexpr int joints = 6;
 constexpr std::int64_t sample_period_ns = 8'000'000; // of the recording; the timer is eight times faster
@@ -29,13 +29,13 @@ class Mailbox {
     void advance() noexcept { now_ns_ += sample_period_ns; }
     [[nodiscard]] bool ended() const noexcept { return next_ == std::size(ur5_frames); }
 
-    std::span<const Frame> drain(std::span<Frame> into) noexcept {
+    std::span<const hal::Frame> drain(std::span<hal::Frame> into) noexcept {
         std::size_t count = 0;
         for (; count < into.size() && !ended() && stamp_ns(ur5_frames[next_]) <= now_ns_; ++next_) {
             const Ur5Frame& received = ur5_frames[next_];
-            Frame& frame = into[count++] = Frame{};
+            hal::Frame& frame = into[count++] = hal::Frame{};
             frame.stamp_ns = stamp_ns(received);
-            frame.stamp_source = StampSource::hardware;
+            frame.stamp_source = hal::StampSource::hardware;
             frame.id = received.id;
             frame.length = received.length;
             std::copy_n(received.data, received.length, frame.data.begin());
@@ -43,10 +43,10 @@ class Mailbox {
         counters_.received += count;
         return into.first(count);
     }
-    SendResult send(const Frame& /*frame*/) noexcept { return SendResult::sent; }
+    hal::SendResult send(const hal::Frame& /*frame*/) noexcept { return hal::SendResult::sent; }
     [[nodiscard]] std::int64_t now_ns() const noexcept { return now_ns_; }
-    [[nodiscard]] BusState state() const noexcept { return BusState::active; }
-    [[nodiscard]] const BusCounters& counters() const noexcept { return counters_; }
+    [[nodiscard]] hal::BusState state() const noexcept { return hal::BusState::active; }
+    [[nodiscard]] const hal::BusCounters& counters() const noexcept { return counters_; }
 
   private:
     static constexpr std::int64_t stamp_ns(const Ur5Frame& frame) {
@@ -55,31 +55,31 @@ class Mailbox {
 
     std::int64_t now_ns_ = stamp_ns(ur5_frames[0]);
     std::size_t next_ = 0;
-    BusCounters counters_;
+    hal::BusCounters counters_;
 };
-static_assert(Bus<Mailbox>);
+static_assert(hal::Bus<Mailbox>);
 
-using Currents = EffortOutput<joints, 4>;
-using Assembly = SampleAssembly<float, joints, Cia402Drive, joints, Currents, 4>;
+using Currents = hal::EffortOutput<joints, 4>;
+using Assembly = hal::SampleAssembly<float, joints, hal::Cia402Drive, joints, Currents, 4>;
 using Estimator = dfdyn::Estimator<ur5_model::Model>;
 
-constexpr TrackConfig track{.max_age_ns = 3 * sample_period_ns, .latency_ns = 0, .qualification = {}};
+constexpr hal::TrackConfig track{.max_age_ns = 3 * sample_period_ns, .latency_ns = 0, .qualification = {}};
 
-constexpr Cia402Drive drive(int joint) {
-    const Signal position{.start_bit = 0,
-                          .length = 32,
-                          .encoding = Encoding::signed_integer,
-                          .factor = 2 * std::numbers::pi / 1048576};
-    const Signal current{
-        .start_bit = 32, .length = 16, .encoding = Encoding::signed_integer, .factor = 0.001};
-    return Cia402Drive({.node = joint + 1,
-                        .joint = joint,
-                        .position_pdo = 0x280,
-                        .position_length = 6,
-                        .position = position,
-                        .effort_pdo = 0x280,
-                        .effort_length = 6,
-                        .effort = current});
+constexpr hal::Cia402Drive drive(int joint) {
+    const hal::Signal position{.start_bit = 0,
+                               .length = 32,
+                               .encoding = hal::Encoding::signed_integer,
+                               .factor = 2 * std::numbers::pi / 1048576};
+    const hal::Signal current{
+        .start_bit = 32, .length = 16, .encoding = hal::Encoding::signed_integer, .factor = 0.001};
+    return hal::Cia402Drive({.node = joint + 1,
+                             .joint = joint,
+                             .position_pdo = 0x280,
+                             .position_length = 6,
+                             .position = position,
+                             .effort_pdo = 0x280,
+                             .effort_length = 6,
+                             .effort = current});
 }
 
 template <class T>
@@ -90,11 +90,13 @@ constexpr std::array<T, joints> six(const T& value) {
 Mailbox mailbox;
 Assembly assembly({.board = {drive(0), drive(1), drive(2), drive(3), drive(4), drive(5)},
                    .position = track,
-                   .position_range = six(Range{-7, 7}),
+                   .position_range = six(hal::Range{-7, 7}),
                    .clock = {.tolerance_ns = 2 * sample_period_ns}},
-                  Currents({.track = track, .range = six(Range{-20, 20})}));
+                  Currents({.track = track, .range = six(hal::Range{-20, 20})}));
 Estimator estimator(ur5_model::constants);
+/// Multiply-adds of learning per tick: a sample is learned in two or three ticks.
 constexpr dfdyn::Budget budget{Estimator::cost().learn / 2};
+static_assert(budget.affords(Estimator::cost().largest_step), "a smaller budget may never finish a sample");
 
 struct Statistics {
     std::uint32_t interrupts = 0;
@@ -114,7 +116,7 @@ volatile bool ended;
 
 void learn(std::int64_t instant_ns) {
     const auto [sample, report] = assembly.assemble(instant_ns, mailbox.now_ns());
-    if (report.position != Reason::ok) {
+    if (report.position != hal::Reason::ok) {
         return;
     }
     const auto estimate = estimator.tick(sample, budget);
@@ -147,7 +149,7 @@ bool restored() { return estimator.restore(flash) == dfdyn::SnapshotResult::ok; 
 
 bool learned_well() {
     const dfdyn::Counters& counters = estimator.counters();
-    report(DFDYN_CORE ": control loop: interrupts ", statistics.interrupts, "");
+    report(DFDYN_CORE ": CAN learning: interrupts ", statistics.interrupts, "");
     report(", frames ", static_cast<std::uint32_t>(mailbox.counters().received), "");
     report(", samples ", static_cast<std::uint32_t>(counters.ticks), "");
     report(", predicted ", static_cast<std::uint32_t>(counters.predicted), "");
@@ -165,13 +167,13 @@ bool learned_well() {
 } // namespace
 
 extern "C" void systick_handler() {
-    static std::array<Frame, 16> room;
+    static std::array<hal::Frame, 16> room;
     if (ended) {
         return;
     }
     static_cast<void>(systick().control); // clears the flag that the timer passed zero
     mailbox.advance();
-    assembly.drain(mailbox, room, [](const dfdyn::hal::SampleTrigger& moment) { learn(moment.instant_ns); });
+    assembly.drain(mailbox, room, [](const hal::SampleTrigger& moment) { learn(moment.instant_ns); });
     end_of_interrupt();
 }
 
