@@ -27,7 +27,7 @@ void add_model(CLI::App& command, LoopOptions& options) {
     command
         .add_option("--on-finding", options.on_finding,
                     "What to do when the learner's monitor names a change, as CAUSE=ACTION,...: report (the "
-                    "default), relearn, compensate (bias_moved) or stop; causes: docs/guide/control.md")
+                    "default), relearn, compensate (bias_moved) or stop; causes: docs/guide/loop.md")
         ->delimiter(',')
         ->type_name("CAUSE=ACTION");
     command
@@ -61,7 +61,7 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
         .add_option(
             "--observer-bandwidth", limits.observer_bandwidth,
             "Of the disturbance observer, rad/s; one value, or one per joint; 0: no observer. None: as "
-            "docs/guide/control.md says, at most 40")
+            "docs/guide/loop.md says, at most 40")
         ->delimiter(',')
         ->check(number_from_zero())
         ->type_name("B");
