@@ -14,8 +14,8 @@
 namespace dfdyn::detail {
 
 #if defined(__AVX__)
-inline constexpr int vector_bytes =
-    32; // also with AVX-512: on Zen 4 a sweep takes up to a tenth longer with 64
+// Also with AVX-512: on Zen 4 a sweep takes up to a tenth longer with 64.
+inline constexpr int vector_bytes = 32;
 #elif defined(__SSE2__) || defined(__ARM_NEON)
 inline constexpr int vector_bytes = 16;
 #else
