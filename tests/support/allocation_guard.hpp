@@ -7,8 +7,8 @@ namespace dfdyn::tests {
 
 /// Numbers of heap calls in the whole process.
 struct HeapCalls {
-    std::uint64_t allocations =
-        0; ///< malloc, calloc, realloc, memalign and similar, and through them operator new
+    /// malloc, calloc, realloc, memalign and similar, and through them operator new.
+    std::uint64_t allocations = 0;
     std::uint64_t releases = 0; ///< free and realloc of a pointer that was not null
 };
 
