@@ -109,28 +109,25 @@ class JointController {
         clock_.restart(state.time_ns);
         missed_ = {};
         recovering_ = {};
-        limited_ = false;
     }
 
     /// Returns the efforts until the next period. `nominal`: effort of your own model for the reference;
     /// zeros without one.
     const Efforts& update(const State& state, const Reference& reference, const Efforts& nominal) {
         const Efforts before = effort_; // in effect until the present position was reached
-        const bool before_limited = limited_;
         const Efforts& forward = forward_.update(reference, nominal.data());
         const bool exact = correct(state, reference);
-        limited_ = !exact;
+        bool limited = !exact; // then the effort is not the one that the motion needs
         for (int k = 0; k < joints; ++k) {
             const float wanted = forward[k] + correction_[k];
             effort_[k] = std::clamp(wanted, -gains_.limit, gains_.limit);
             excess_[k] = wanted - effort_[k];
-            limited_ = limited_ || excess_[k] != 0;
+            limited = limited || excess_[k] != 0;
         }
-        if (!limited_) { // a limited effort is not the one that the motion needs
+        if (!limited) {
             forward_.commanded(effort_.data());
         }
-        forward_.measured(state.time_ns, exact ? state.position.data() : nullptr,
-                          before_limited ? nullptr : before.data());
+        forward_.measured(state.time_ns, exact ? state.position.data() : nullptr, before.data());
         return effort_;
     }
 
@@ -206,5 +203,4 @@ class JointController {
     StampClock clock_;
     dfdyn::Storage<int, joints> missed_{};      // ticks since the last measurement
     dfdyn::Storage<bool, joints> recovering_{}; // the correction is limited in its rate
-    bool limited_ = false; // whether the last effort is not the one that the motion needs
 };
