@@ -169,7 +169,7 @@ int run(const DiagnoseOptions& options) {
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     check_torque_constants(options, outputs, robot.joints.size());
-    std::vector<Recording> recordings = options.recordings.read(columns_for(robot, outputs));
+    std::vector<Recording> recordings = options.recordings.read_each_once(columns_for(robot, outputs));
     check_changed(options, outputs, recordings.size());
     check_folders(options);
     const DiagnosisWork work = run_diagnosis(robot, recordings, options, outputs);

@@ -33,7 +33,7 @@ std::vector<Recording> read_all(const IdentifyOptions& options, const Robot& rob
     ReadOptions columns = columns_for(robot, outputs);
     columns.velocity = true;
     columns.acceleration = true;
-    return options.recordings.read(columns);
+    return options.recordings.read_each_once(columns);
 }
 
 void print_chain(const Robot& robot) {

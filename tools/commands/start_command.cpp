@@ -77,7 +77,7 @@ std::vector<Recording> read_as(const StartOptions& options, const std::optional<
                                OutputKind outputs) {
     ReadOptions columns;
     columns.outputs = outputs;
-    return options.recordings.read(robot ? columns_for(*robot, outputs) : columns);
+    return options.recordings.read_each_once(robot ? columns_for(*robot, outputs) : columns);
 }
 
 /// Reads the recordings with the outputs that they have: torques, otherwise currents, otherwise a wrench.

@@ -223,7 +223,7 @@ std::vector<Recording> read_recordings(const TrainOptions& options, OutputKind o
     columns.velocity = columns.acceleration = // for the features, and for the rigid body with friction
         training.physics ||
         (sees_derivatives(training) && training.derivatives != DerivativeSource::estimated);
-    return options.recordings.read(columns);
+    return options.recordings.read_each_once(columns);
 }
 
 /// Returns the sizes that no option sets.

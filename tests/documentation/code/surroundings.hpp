@@ -20,10 +20,12 @@ inline dfdyn::Sample<float, 6, 6> sample;
 inline constexpr dfdyn::Budget budget{1000};
 void report(const char* name);
 
+inline constexpr std::int64_t period_ns = 1'000'000;
+inline constexpr int ticks_per_sample = 8;
 using Six = dfdyn::Storage<float, 6>;
 inline constexpr Six ten{{10, 10, 10, 10, 10, 10}};
 inline constexpr dfdyn::FeedForwardSettings<float, 6> forward_settings{
-    .period_ns = 1'000'000, .ticks_per_sample = 8, .limit = ten, .cap = ten, .rate = ten};
+    .period_ns = period_ns, .ticks_per_sample = ticks_per_sample, .limit = ten, .cap = ten, .rate = ten};
 std::int64_t clock_ns();
 const float* encoders_rad();
 dfdyn::Reference<float, 6> reference();

@@ -51,7 +51,7 @@ void RecordingOptions::add_to(CLI::App& command) {
         ->type_name("q=deg,t=ns,...");
 }
 
-void RecordingOptions::check_different() const {
+std::vector<Recording> RecordingOptions::read_each_once(const ReadOptions& options) const {
     for (auto log = logs.begin(); log != logs.end(); ++log) {
         const auto same = [&](const std::filesystem::path& other) {
             return place_in_file_system(other) == place_in_file_system(*log);
@@ -60,10 +60,10 @@ void RecordingOptions::check_different() const {
             throw InputError("--log: expected each recording once, found " + shown(*log) + " twice");
         }
     }
+    return read(options);
 }
 
 std::vector<Recording> RecordingOptions::read(ReadOptions options) const {
-    check_different();
     options.rows = parse_row_range(rows);
     options.skip_bad_rows = skip_bad_rows;
     options.columns = parse_column_patterns(columns);

@@ -35,9 +35,8 @@ struct RecordingOptions {
     /// rows once on stderr.
     std::vector<Recording> read(ReadOptions options) const;
 
-  private:
-    /// Throws InputError if a recording is given twice: its noise would count as known.
-    void check_different() const;
+    /// Does the same. Throws InputError if a recording is given twice: its noise would count as known.
+    std::vector<Recording> read_each_once(const ReadOptions& options) const;
 };
 
 /// Throws InputError if two outputs, or an output and an input, are the same file. Empty paths are ignored.

@@ -262,6 +262,12 @@ TEST_CASE("a scenario or model that the loop cannot use is rejected with what is
     Scenario scenario = pendulum_scenario();
     CHECK(refusal(scenario, test_pendulum(), nullptr) == "none");
     LoopModel model{{}, "m.json", false};
+    model.model.joints = 2;
+    model.model.outputs.names = {"tau1", "tau2"};
+    CHECK(refusal(scenario, test_pendulum(), &model) ==
+          "m.json: expected a model of the outputs tau1, found one of tau1, tau2");
+    model.model.joints = 1;
+    model.model.outputs.names = {"tau1"};
     model.model.sample_period_s = 0.0085;
     CHECK(refusal(scenario, test_pendulum(), &model) ==
           "m.json: expected a sample period that is a multiple of the loop's 0.001 s, found 0.0085 s");
