@@ -32,6 +32,7 @@ struct Stamped {
 struct BagContent {
     std::vector<Stamped<JointStateMessage>> joints;
     std::vector<Stamped<WrenchMessage>> wrenches;
+    std::optional<OutputKind> outputs; ///< to read
 };
 
 /// Reads the messages of the requested topics, or of the only topic of each type.
@@ -49,13 +50,25 @@ class ContentReader {
                              "; the bag has " + listed(described_topics()));
         }
         require_one(joint_state_type);
-        if (options_.outputs == OutputKind::wrench) {
+        content_.outputs = outputs();
+        if (content_.outputs == OutputKind::wrench) {
             require_one(wrench_type);
         }
         return std::move(content_);
     }
 
   private:
+    /// Returns the outputs to read: without efforts a wrench, if that is one of the choices.
+    std::optional<OutputKind> outputs() const {
+        const std::vector<OutputKind>& choices = options_.output_choices;
+        if (options_.outputs || choices.empty()) {
+            return options_.outputs;
+        }
+        const bool wrench = std::ranges::find(choices, OutputKind::wrench) != choices.end() &&
+                            !content_.wrenches.empty() && content_.joints.front().message.effort.empty();
+        return wrench ? OutputKind::wrench : choices.front();
+    }
+
     void take(const BagMessage& message) {
         types_[message.topic.name] = message.topic.type;
         if (!options_.topics.empty() &&
@@ -194,8 +207,8 @@ class BagRecording {
         if (options_.velocity && !first.velocity.empty()) {
             recording_.velocity.names = joint_names("qd", count);
         }
-        if (options_.outputs) {
-            recording_.output.names = output_names(*options_.outputs, count);
+        if (content_.outputs) {
+            recording_.output.names = output_names(*content_.outputs, count);
         }
     }
 
@@ -232,7 +245,7 @@ class BagRecording {
     }
 
     bool has_output(std::int64_t time_ns) const {
-        return options_.outputs != OutputKind::wrench ||
+        return content_.outputs != OutputKind::wrench ||
                (time_ns >= content_.wrenches.front().time_ns && time_ns <= content_.wrenches.back().time_ns);
     }
 
@@ -260,11 +273,11 @@ class BagRecording {
         if (fault.empty() && recording_.velocity.present()) {
             fault = append(recording_.velocity, message.velocity, "qd", "velocity");
         }
-        if (fault.empty() && options_.outputs == OutputKind::wrench) {
+        if (fault.empty() && content_.outputs == OutputKind::wrench) {
             fault = append_wrench(joints.time_ns);
-        } else if (fault.empty() && options_.outputs) {
+        } else if (fault.empty() && content_.outputs) {
             fault = append(recording_.output, message.effort,
-                           *options_.outputs == OutputKind::joint_torque ? "tau" : "i", "effort");
+                           *content_.outputs == OutputKind::joint_torque ? "tau" : "i", "effort");
         }
         return fault;
     }

@@ -107,13 +107,16 @@ inline std::size_t total_rows(std::span<const Recording> recordings) noexcept {
 struct ReadOptions {
     std::size_t joint_count = 0;                      ///< joints of the chain; 0: the number in the recording
     std::optional<OutputKind> outputs = std::nullopt; ///< required if given
-    bool velocity = false;                            ///< read them if the recording has them
-    bool acceleration = false;                        ///< read them if the recording has them
-    RowRange rows = {};                               ///< other rows are ignored
-    bool skip_bad_rows = false;                       ///< false: the first bad row is an error
-    ColumnPatterns columns = {};                      ///< of quantities with other names than t, q1, …
-    Units units = {};                                 ///< of quantities in other units than s, rad, N·m, A
-    std::vector<std::string> joint_names = {};        ///< of the chain; empty: unknown
+    /// Without `outputs`: the first of these kinds that the recording has, or else the first one, is
+    /// required.
+    std::vector<OutputKind> output_choices = {};
+    bool velocity = false;                     ///< read them if the recording has them
+    bool acceleration = false;                 ///< read them if the recording has them
+    RowRange rows = {};                        ///< other rows are ignored
+    bool skip_bad_rows = false;                ///< false: the first bad row is an error
+    ColumnPatterns columns = {};               ///< of quantities with other names than t, q1, …
+    Units units = {};                          ///< of quantities in other units than s, rad, N·m, A
+    std::vector<std::string> joint_names = {}; ///< of the chain; empty: unknown
     /// Topics of a ROS 2 bag: joint states, and a wrench if it is the output; empty: the only ones in the
     /// bag.
     std::vector<std::string> topics = {};

@@ -28,7 +28,7 @@ std::optional<std::string_view> LineReader::next() {
         }
         searched = end_ - begin_;
         if (searched > longest_line + 1) {
-            throw too_long(line_number_ + 1);
+            throw too_long(line_number_ + 1, {unread, searched});
         }
         if (!fill()) {
             break;
@@ -40,9 +40,12 @@ std::optional<std::string_view> LineReader::next() {
     return take(searched, 0);
 }
 
-InputError LineReader::too_long(std::size_t line_number) const {
-    return InputError(name_ + ":" + std::to_string(line_number) + ": expected a line of at most " +
-                      std::to_string(longest_line) + " bytes, found a longer one");
+/// `begin`: the first bytes of the line.
+InputError LineReader::too_long(std::size_t line_number, std::string_view begin) const {
+    return InputError(
+        name_ + ":" + std::to_string(line_number) + ": expected a line of at most " +
+        std::to_string(longest_line) + " bytes, found a longer one" +
+        (begin.find('\r') < begin.size() - 1 ? " (lines end with CR alone: convert them to LF)" : ""));
 }
 
 /// Appends one chunk to the unread bytes. Returns false at the end of the file.
@@ -65,7 +68,7 @@ std::string_view LineReader::take(std::size_t length, std::size_t terminator) {
         line.remove_suffix(1);
     }
     if (line.size() > longest_line) {
-        throw too_long(line_number_);
+        throw too_long(line_number_, line);
     }
     if (line_number_ == 1 && line.starts_with(byte_order_mark)) {
         line.remove_prefix(byte_order_mark.size());

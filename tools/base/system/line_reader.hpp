@@ -38,7 +38,7 @@ class LineReader {
 
   private:
     bool fill();
-    InputError too_long(std::size_t line_number) const;
+    InputError too_long(std::size_t line_number, std::string_view begin) const;
     std::string_view take(std::size_t length, std::size_t terminator);
 
     std::string name_; ///< for messages

@@ -96,7 +96,8 @@ TEST_CASE("a bad header is rejected with the expected and the found text") {
             {"t,q1,q2,q4,tau1\n",
              "1: expected joint positions q1, q2, ... without a hole, found q4 but no q3"},
             {"t,q2,tau1\n", "1: expected joint positions q1, q2, ... without a hole, found q2 but no q1"},
-            {"t,q0,q1\n", "1: expected joint positions q1, q2, ... without a hole, found q0"},
+            {"t,q0,q1\n",
+             "1: expected joint positions q1, q2, ... without a hole, found q0 (--columns q=q*)"},
             {"t,q1,q4294967297\n",
              "1: expected joint positions q1, q2, ... without a hole, found q4294967297 but no q2"},
             {"t,q1,q2,tau1,tau2,qd1\n",
@@ -124,9 +125,24 @@ TEST_CASE("a bad header is rejected with the expected and the found text") {
             {std::string("t\0,q1\n", 6),
              "1: expected a header of column names, found no text: \"t\\x00,q1\""},
             {std::string("\xff\xfet\0,\0", 6),
-             "1: expected a header of column names, found no text: \"\\xff\\xfet\\x00,\\x00\""},
-            {"t,q1,tau1\r0,0,0\r1,0,0\r",
-             "1: expected a header of column names, found no text: \"t,q1,tau1\\x0d0,0,0\\x0d1,0,0\""},
+             "1: expected a header of column names, found no text: \"\\xff\\xfet\\x00,\\x00\" (UTF-16: save "
+             "it as UTF-8, or iconv "
+             "-f UTF-16 -t UTF-8)"},
+            {"t,q1,tau1\r0,0,0\r1,0,0\r", "1: expected a header of column names, found no text: "
+                                          "\"t,q1,tau1\\x0d0,0,0\\x0d1,0,0\" (lines end with CR "
+                                          "alone: convert them to LF, such as with tr '\\r' '\\n')"},
+            {"(1600000000.000000) can0 181#00\n",
+             "1: expected a header of column names, found a line of a candump log, which needs --bus (dfdyn "
+             "replay)"},
+            {"t,q0,q1,qd0,qd1,tau0,tau1\n",
+             "1: expected joint positions q1, q2, ... without a hole, found q0 "
+             "(--columns 'q=q0|q1,qd=qd*,tau=tau*')"},
+            {"t [s],q1 [rad],tau1 (Nm)\n", "1: expected columns t, q1, tau1, found no t, q1, tau1 (did you "
+                                           "mean \"t [s]\" for t, \"q1 [rad]\" "
+                                           "for q1, \"tau1 (Nm)\" for tau1: --columns \"q=q* [rad],t=t "
+                                           "[s],tau=tau* (Nm)\"?); the header has t "
+                                           "[s], q1 [rad], tau1 (Nm)" +
+                                               advice},
             {"t,q1\x1b[2J\n", "1: expected a header of column names, found no text: \"t,q1\\x1b[2J\""},
         },
         torque);

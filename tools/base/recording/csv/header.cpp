@@ -2,6 +2,7 @@
 #include "tools/base/recording/csv/header.hpp"
 
 #include "tools/base/recording/csv/csv_line.hpp"
+#include "tools/base/recording/csv/header_line.hpp"
 #include "tools/base/text/nearest_name.hpp"
 #include "tools/base/text/text.hpp"
 
@@ -31,35 +32,6 @@ Names labels(const Names& columns) {
         out.push_back(column_label(columns, index));
     }
     return out;
-}
-
-void require_text(std::string_view line, const std::string& where) {
-    const auto is_control = [](char character) {
-        const auto byte = static_cast<unsigned char>(character);
-        return (byte < 0x20 && byte != '\t') || byte == 0x7f;
-    };
-    if (std::any_of(line.begin(), line.end(), is_control)) {
-        throw InputError(where + ": expected a header of column names, found no text: " + in_quotes(line));
-    }
-}
-
-Names split(std::string_view line, char separator, const std::string& where) {
-    std::vector<std::string_view> fields;
-    split_fields(line, separator, fields);
-    for (const std::string_view field : fields) {
-        if (field.find('"') != std::string_view::npos) {
-            throw InputError(where + ": expected a column name, found " + in_quotes(field) +
-                             " (a quoted name ends with a quote and holds none)");
-        }
-    }
-    return {fields.begin(), fields.end()};
-}
-
-void require_separators(const Names& columns, const std::string& where) {
-    if (columns.size() == 1 && columns.front().find(' ') != std::string::npos) {
-        throw InputError(where + ": expected column names separated by commas, semicolons or tabs, found " +
-                         in_quotes(" ") + " between them");
-    }
 }
 
 /// Returns the index of each named column. Unnamed columns are left out: programs write them for an index, or
@@ -100,7 +72,9 @@ std::size_t count_joints(const Names& columns, const std::string& where, bool as
         if (number != expected) {
             throw InputError(where + ": expected joint positions q1, q2, ... without a hole, found q" +
                              std::to_string(number) +
-                             (number == 0 ? "" : " but no q" + std::to_string(expected)) +
+                             (number == 0 && !assigned ? from_zero(columns)
+                              : number == 0            ? ""
+                                                       : " but no q" + std::to_string(expected)) +
                              (assigned ? ", as --columns assigns them" : ""));
         }
         ++expected;
@@ -206,6 +180,17 @@ class Builder {
         return "";
     }
 
+    /// Returns the column that is `name` with a unit after it, as `t [s]`, or else the nearest one.
+    static std::optional<std::string> column_like(const std::string& name, const Names& unused) {
+        const auto has_unit = [&](const std::string& column) {
+            const std::size_t bracket = column.find_first_of("[(");
+            return bracket != std::string::npos &&
+                   trimmed(std::string_view(column).substr(0, bracket)) == name;
+        };
+        const auto found = std::ranges::find_if(unused, has_unit);
+        return found != unused.end() ? *found : nearest_name(name, unused);
+    }
+
     /// Returns ` (did you mean "Q1" for q1: --columns q=Q*?)` for the first missing name of each quantity
     /// with a close one in the header.
     std::string nearest(const Names& missing, const Names& names) const {
@@ -220,7 +205,7 @@ class Builder {
         std::map<std::string, std::string> patterns; // by quantity
         std::string pairs;
         for (const std::string& name : missing) {
-            const auto found = nearest_name(name, unused);
+            const auto found = column_like(name, unused);
             if (found && patterns.emplace(without_number(name), pattern_of(*found, name)).second) {
                 pairs += (pairs.empty() ? "" : ", ") + in_quotes(*found) + " for " + name;
             }
@@ -229,9 +214,13 @@ class Builder {
         for (const auto& [quantity, pattern] : patterns) {
             if (std::ranges::count(missing, quantity, without_number) ==
                 std::ranges::count(names, quantity, without_number)) { // else a single column is misspelt
-                columns += (columns.empty() ? ": --columns " : ",") + quantity + "=" + listed(Names{pattern});
+                columns += (columns.empty() ? "" : ",") + quantity + "=" + listed(Names{pattern});
             }
         }
+        if (columns.find(' ') != std::string::npos) {
+            columns = '"' + columns + '"'; // for the shell
+        }
+        columns = (columns.empty() ? "" : ": --columns ") + columns;
         return pairs.empty() ? "" : " (did you mean " + pairs + columns + "?)";
     }
 
@@ -248,6 +237,19 @@ class Builder {
     std::unordered_map<std::string, std::size_t> index_;
     std::size_t next_ = 0;
 };
+
+/// Returns the outputs to read of a header whose columns have these roles.
+std::optional<OutputKind> chosen_outputs(const Names& roles, std::size_t joint_count,
+                                         const ReadOptions& options) {
+    if (options.outputs || options.output_choices.empty()) {
+        return options.outputs;
+    }
+    const auto has = [&](const std::string& name) { return std::ranges::find(roles, name) != roles.end(); };
+    const auto found = std::ranges::find_if(options.output_choices, [&](OutputKind kind) {
+        return std::ranges::all_of(output_names(kind, joint_count), has);
+    });
+    return found == options.output_choices.end() ? options.output_choices.front() : *found;
+}
 
 Names needed_columns(std::size_t joint_count, const ReadOptions& options) {
     Names needed = joint_names("q", joint_count);
@@ -296,19 +298,18 @@ const std::string& Header::time_column() const {
                                             slot.begin())];
 }
 
-Header parse_header(std::string_view line, const std::string& where, const ReadOptions& options) {
+Header parse_header(std::string_view line, const std::string& where, ReadOptions options) {
     Header header;
     header.separator = separator_of(line);
-    require_text(line, where);
-    header.columns = split(line, header.separator, where);
+    header.columns = header_names(line, header.separator, where);
     header.slot.resize(header.columns.size());
-    require_separators(header.columns, where);
     index_columns(header.columns, where);
     const Names roles = column_roles(header.columns, options.columns, options.joint_names, where);
     Builder builder(header, roles, where);
     const std::size_t found = count_joints(roles, where, !options.columns.empty());
     require_chain(found, where, options);
     const std::size_t joint_count = std::max({found, options.joint_count, std::size_t{1}});
+    options.outputs = chosen_outputs(roles, joint_count, options);
     builder.require(needed_columns(joint_count, options));
     builder.place({"t"});
     header.position = builder.place(joint_names("q", joint_count));

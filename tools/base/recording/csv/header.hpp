@@ -33,6 +33,6 @@ struct Header {
 /// Reads the line of a recording with the names of its columns. Throws InputError, starting with `where`
 /// (file and line), if the line is no header, a name occurs twice, a column required by `options` is missing,
 /// or its patterns and units do not fit.
-Header parse_header(std::string_view line, const std::string& where, const ReadOptions& options);
+Header parse_header(std::string_view line, const std::string& where, ReadOptions options);
 
 } // namespace dfdyn::tools
