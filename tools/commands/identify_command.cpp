@@ -5,6 +5,7 @@
 #include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
+#include "tools/commands/options/setup_options.hpp"
 #include "tools/commands/options/value_checks.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/identification/identify.hpp"
@@ -22,6 +23,7 @@ namespace {
 struct IdentifyOptions {
     RobotOptions robot;
     RecordingOptions recordings;
+    SetupOptions setup;
     std::string outputs;
     bool consistent = false;
     ZeroPhaseWindow window;
@@ -98,6 +100,9 @@ int run(const IdentifyOptions& options) {
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     const std::vector<Recording> recordings = read_all(options, robot, outputs);
+    if (!options.setup.accept(recordings, {outputs, &robot})) {
+        return 1;
+    }
     const RecordedMotion recorded = recorded_motion(recordings, options.window);
     const Identification found =
         identify(robot, outputs, recorded, recordings.front().output.names, options.consistent);
@@ -141,11 +146,14 @@ void add_identify_command(CLI::App& app, Command& chosen) {
     command->add_flag("--consistent", options->consistent,
                       "Also parameters of bodies that can be: positive masses, inertias of real bodies");
     add_window_options(*command, options->window);
+    options->setup.add_to(*command);
     command->add_option("-o,--output", options->parameters, "The parameters")->type_name("P.json");
     add_json_option(*command, options->json);
-    command->footer("Example:\n  dfdyn identify --robot arm.urdf --tip tool0 --log run.csv --outputs tau "
-                    "--consistent -o parameters.json\n"
-                    "Exit status: 0 done, 2 bad usage or input.");
+    command->footer(
+        "Example:\n  dfdyn identify --robot arm.urdf --tip tool0 --log run.csv --outputs tau "
+        "--consistent -o parameters.json\n"
+        "Exit status: 0 done, 1 a mistake in the set-up of a recording (nothing is written), 2 bad "
+        "usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

@@ -30,6 +30,10 @@ SetupFindings check_output_unit(const Recording& recording, OutputKind outputs);
 /// Cost: O(rows).
 SetupFindings check_position_unit(const Recording& recording, const Robot* robot);
 
+/// Returns the remedy for columns of `quantity` in `unit`, both as in --units: `multiply by pi/180, or
+/// --units q=deg`.
+std::string unit_remedy(const std::string& quantity, const std::string& unit);
+
 /// Returns the difference between the largest and the smallest value of a column.
 double travel(const Columns& columns, std::size_t index);
 

@@ -89,7 +89,8 @@ SetupFindings check_degrees_by_gravity(const Recording& recording, const Recorde
     return {{SetupFault::position_unit, Severity::mistake, listed(recording.position.names),
              "columns " + listed(recording.position.names) + ": expected rad, found up to " +
                  rounded_text(position.cwiseAbs().maxCoeff()) + ": looks like degrees (" + percent(degrees) +
-                 " of the outputs' variance left instead of " + percent(radians) + "); multiply by pi/180"}};
+                 " of the outputs' variance left instead of " + percent(radians) + "); " +
+                 unit_remedy("q", "deg")}};
 }
 
 } // namespace dfdyn::tools

@@ -45,13 +45,13 @@ std::string unit_text(const ArmRecording& arm, double factor) {
                                                 : "N·m") +
                               ", found " + rounded_text(factor);
     if (!arm.gains_known) {
-        return found + " A per N·m of the robot's model: looks like mA; divide by 1000";
+        return found + " A per N·m of the robot's model: looks like mA; " + unit_remedy("i", "mA");
     }
     return found + " times the robot model's outputs with the same course: another unit, such as " +
            (arm.kind == OutputKind::motor_current ? "mA, or torque constants of the motor, not of the joint"
             : arm.wrench()                        ? "mN"
                                                   : "mN·m or N·cm") +
-           "; convert it";
+           "; convert it (--units)";
 }
 
 std::string heavy_text(const ArmRecording& arm, double factor) {

@@ -179,7 +179,7 @@ void add_degrees(const ArmRecording& arm, std::vector<Reading>& readings) {
                         true,
                         columns,
                         "columns " + columns + ": expected rad, found what looks like degrees",
-                        "multiply by pi/180",
+                        unit_remedy("q", "deg"),
                         {},
                         shares_left(arm, motion)});
 }

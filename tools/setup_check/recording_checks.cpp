@@ -67,9 +67,9 @@ double largest_travel(const Recording& recording) {
 
 /// Returns the unit in which steps of this length are at most 150 ms.
 std::string clock_unit(double step) {
-    return step < 150     ? "milliseconds; divide t by 1000"
-           : step < 1.5e5 ? "microseconds; divide t by 1e6"
-                          : "nanoseconds; divide t by 1e9";
+    return step < 150     ? "milliseconds; " + unit_remedy("t", "ms")
+           : step < 1.5e5 ? "microseconds; " + unit_remedy("t", "us")
+                          : "nanoseconds; " + unit_remedy("t", "ns");
 }
 
 /// Returns the rows at which a joint jumps by `turn`, within 3 %.
@@ -135,13 +135,25 @@ SetupFindings check_limits(const Recording& recording, const Robot& robot) {
                        rounded_text(beyond.factor) + " times beyond the joints' limits: ";
     text += !beyond.certain ? "another zero, other limits or another robot"
             : beyond.factor > 2 * degrees_per_radian
-                ? "expected rad (m), found what looks like thousandths (mrad, mm); divide by 1000"
-                : "expected rad, found what looks like degrees; multiply by pi/180";
+                ? "expected rad (m), found what looks like thousandths (mrad, mm); " + unit_remedy("q", "mm")
+                : "expected rad, found what looks like degrees; " + unit_remedy("q", "deg");
     return {{SetupFault::position_unit, beyond.certain ? Severity::mistake : Severity::warning,
              names_of(recording.position, beyond.joints), std::move(text)}};
 }
 
 } // namespace
+
+std::string unit_remedy(const std::string& quantity, const std::string& unit) {
+    const std::string option = ", or --units " + quantity + "=" + unit;
+    if (unit == "deg") {
+        return "multiply by pi/180" + option;
+    }
+    return "divide " + std::string(quantity == "t" ? "t " : "") + "by " +
+           (unit == "us"   ? "1e6"
+            : unit == "ns" ? "1e9"
+                           : "1000") +
+           option;
+}
 
 double travel(const Columns& columns, std::size_t index) {
     double least = columns.values.empty() ? 0 : columns.values[index];
@@ -226,7 +238,8 @@ SetupFindings check_output_unit(const Recording& recording, OutputKind outputs) 
              listed(recording.output.names),
              "columns " + listed(recording.output.names) + ": expected " + (current ? "A" : "N·m") +
                  ", found up to " + rounded_text(largest) + ": " +
-                 (current ? "looks like mA" : "another unit, looks like mN·m") + "; divide by 1000"}};
+                 (current ? "looks like mA; " + unit_remedy("i", "mA")
+                          : "another unit, looks like mN·m; " + unit_remedy("tau", "mNm"))}};
 }
 
 SetupFindings check_position_unit(const Recording& recording, const Robot* robot) {
@@ -248,7 +261,7 @@ SetupFindings check_position_unit(const Recording& recording, const Robot* robot
     }
     return {{SetupFault::position_unit, Severity::mistake, listed(beyond),
              "columns " + listed(beyond) + ": expected rad, found up to " + rounded_text(largest) +
-                 ": looks like degrees; multiply by pi/180"}};
+                 ": looks like degrees; " + unit_remedy("q", "deg")}};
 }
 
 } // namespace dfdyn::tools
