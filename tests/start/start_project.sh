@@ -29,7 +29,11 @@ fi
 grep -q 'controller: expected a new or empty folder, found files in it' refused.txt
 
 if [[ $core == host ]]; then
-    test -s controller/diagnosis.html
+    grep -q 'the first [0-9]* of [0-9]* rows' controller/diagnosis.html
+    if grep -q 'As an online learner sees it' controller/diagnosis.html; then
+        echo "diagnosis.html has a table of learners that were not run"
+        exit 1
+    fi
     "$dfdyn" footprint --model controller/model.json | grep -q '^smaller models'
     cmake -S controller -B controller/build >/dev/null
     cmake --build controller/build >/dev/null

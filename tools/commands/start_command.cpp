@@ -73,40 +73,34 @@ struct Candidate {
 
 void say(const std::string& step) { std::cout << "\n== " << step << '\n'; }
 
-std::vector<Recording> read_as(const StartOptions& options, const std::optional<Robot>& robot,
-                               OutputKind outputs) {
-    ReadOptions columns;
-    columns.outputs = outputs;
-    return options.recordings.read_each_once(robot ? columns_for(*robot, outputs) : columns);
-}
-
 /// Reads the recordings with the outputs that they have: torques, otherwise currents, otherwise a wrench.
 Arm read_arm(const StartOptions& options) {
     Arm arm;
+    ReadOptions columns;
+    if (options.outputs.empty()) {
+        columns.output_choices = {OutputKind::joint_torque, OutputKind::motor_current, OutputKind::wrench};
+    } else {
+        columns.outputs = parse_output_kind(options.outputs);
+    }
     if (!options.robot.urdf.empty()) {
-        arm.robot = options.robot.read(OutputKind::joint_torque);
+        arm.robot = options.robot.read(columns.outputs.value_or(OutputKind::joint_torque));
+        columns.joint_count = arm.robot->joints.size();
+        columns.joint_names = names_of_joints(*arm.robot);
     }
-    if (!options.outputs.empty()) {
-        arm.outputs = parse_output_kind(options.outputs);
-        arm.recordings = read_as(options, arm.robot, arm.outputs);
-        return arm;
+    try {
+        arm.recordings = options.recordings.read_each_once(columns);
+    } catch (const MissingColumns& failure) {
+        throw InputError(failure.what() +
+                         std::string(options.outputs.empty()
+                                         ? "; start also accepts motor currents (i) or a wrench as outputs"
+                                         : ""));
     }
-    std::string first_missing;
-    std::string first_failure; ///< of a recording that has the columns
-    for (const OutputKind kind : {OutputKind::joint_torque, OutputKind::motor_current, OutputKind::wrench}) {
-        try {
-            arm.recordings = read_as(options, arm.robot, kind);
-            arm.outputs = kind;
-            return arm;
-        } catch (const MissingColumns& failure) {
-            first_missing = first_missing.empty() ? failure.what() : first_missing;
-        } catch (const InputError& failure) {
-            first_failure = first_failure.empty() ? failure.what() : first_failure;
-        }
+    const Recording& first = arm.recordings.front();
+    arm.outputs = kind_of_outputs(first.output.names, first.joint_count());
+    if (arm.robot) {
+        options.robot.require_sensor(*arm.robot, arm.outputs);
     }
-    throw InputError(first_failure.empty()
-                         ? first_missing + "; start also accepts motor currents (i) or a wrench as outputs"
-                         : first_failure);
+    return arm;
 }
 
 /// Throws InputError if gaps leave no complete windows to train on, before the diagnosis takes its time.
@@ -135,8 +129,11 @@ void diagnose_robot(const Arm& arm, const SplitRecordings& split, const StartOpt
     std::optional<Progress> progress(std::in_place, "searching for causes, round", 0);
     std::size_t rounds = 0;
     how.progress = [&](int) { progress->update(++rounds); };
-    const DiagnosisWork work = diagnose(*arm.robot, joined_recording(split.training), how);
+    how.parts = split.training;
+    DiagnosisWork work = diagnose(*arm.robot, joined_recording(split.training), how);
     progress.reset();
+    work.diagnosis.scope = "the first " + std::to_string(total_rows(split.training)) + " of " +
+                           std::to_string(total_rows(arm.recordings)) + " rows";
     const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
     files["diagnosis.json"] = diagnosis_json(work.diagnosis).dump(2) + '\n';
     const std::string curves = "diagnosis_curves.csv";

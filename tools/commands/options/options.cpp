@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <system_error>
 
 namespace dfdyn::tools {
 
@@ -20,6 +21,11 @@ void RecordingOptions::add_to(CLI::App& command) {
                     "them")
         ->required()
         ->delimiter(',')
+        ->transform([](const std::string& name) {
+            std::error_code unknown;
+            const bool exists = std::filesystem::exists(name, unknown);
+            return exists ? name : std::string(trimmed(name)); // "a.csv, b.csv"
+        })
         ->type_name("L.csv[,L2.csv...]");
     command
         .add_option(

@@ -60,12 +60,16 @@ Robot RobotOptions::read(OutputKind outputs) const {
     for (const std::string& note : robot.notes) {
         print_note(shown(urdf) + ": " + note);
     }
+    require_sensor(robot, outputs);
+    return robot;
+}
+
+void RobotOptions::require_sensor(const Robot& robot, OutputKind outputs) const {
     if (outputs == OutputKind::wrench && !robot.sensor) {
         throw InputError(shown(urdf) + ": expected one F/T sensor at a fixed joint between link " +
                          in_quotes(robot.base) + " and link " + in_quotes(robot.tip) +
                          ", found none (--ft-joint names it)");
     }
-    return robot;
 }
 
 ReadOptions columns_for(const Robot& robot, OutputKind outputs) {

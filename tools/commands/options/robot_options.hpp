@@ -23,6 +23,9 @@ struct RobotOptions {
     /// Reads the robot and prints its notes once on stderr. Throws InputError also if `outputs` is a wrench
     /// and the chain has no sensor.
     Robot read(OutputKind outputs) const;
+
+    /// Throws InputError if `outputs` is a wrench and the chain of `robot`, as read(), has no sensor.
+    void require_sensor(const Robot& robot, OutputKind outputs) const;
 };
 
 /// Returns the columns to read for this robot: positions of its joints, and the outputs.
