@@ -191,4 +191,9 @@ TEST_CASE("any file stem becomes a valid identifier") {
     CHECK(to_identifier("my-arm 2") == "my_arm_2");
     CHECK(to_identifier("2dof") == "model_2dof");
     CHECK(to_identifier("") == "model_");
+    CHECK(to_identifier("1-mödel") == "model_1_m__del");
+    for (const std::string taken : {"class", "int", "co_await", "xor_eq", "dfdyn", "std"}) {
+        CHECK(to_identifier(taken) == taken + "_");
+    }
+    CHECK(to_identifier("classes") == "classes");
 }

@@ -10,6 +10,7 @@
 #include "tools/model/structure.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <sstream>
 #include <string_view>
@@ -240,6 +241,31 @@ std::string constants_text(const TrainedModel& model) {
            extrapolation_constants(model, constants) + "};\n\n";
 }
 
+/// Returns whether `name` cannot be a namespace: it is a keyword of C++20, or a name that the header uses.
+bool is_taken(std::string_view name) {
+    static constexpr auto taken = std::to_array<std::string_view>(
+        {"alignas",   "alignof",       "and",         "and_eq",       "asm",
+         "auto",      "bitand",        "bitor",       "bool",         "break",
+         "case",      "catch",         "char",        "char16_t",     "char32_t",
+         "char8_t",   "class",         "co_await",    "co_return",    "co_yield",
+         "compl",     "concept",       "const",       "const_cast",   "consteval",
+         "constexpr", "constinit",     "continue",    "decltype",     "default",
+         "delete",    "dfdyn",         "do",          "double",       "dynamic_cast",
+         "else",      "enum",          "explicit",    "export",       "extern",
+         "false",     "float",         "for",         "friend",       "goto",
+         "if",        "inline",        "int",         "long",         "main",
+         "mutable",   "namespace",     "new",         "noexcept",     "not",
+         "not_eq",    "nullptr",       "operator",    "or",           "or_eq",
+         "private",   "protected",     "public",      "register",     "reinterpret_cast",
+         "requires",  "return",        "short",       "signed",       "sizeof",
+         "static",    "static_assert", "static_cast", "std",          "struct",
+         "switch",    "template",      "this",        "thread_local", "throw",
+         "true",      "try",           "typedef",     "typeid",       "typename",
+         "union",     "unsigned",      "using",       "virtual",      "void",
+         "volatile",  "wchar_t",       "while",       "xor",          "xor_eq"});
+    return std::ranges::find(taken, name) != taken.end();
+}
+
 std::string contact_text(const ContactModel& contact) {
     const std::vector<ContactLimits<float>> joints = contact_constants(contact);
     if (joints.empty()) {
@@ -266,7 +292,7 @@ std::string to_identifier(const std::string& stem) {
         result += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
     }
     const bool usable = !result.empty() && std::isalpha(static_cast<unsigned char>(result.front())) != 0;
-    return usable ? result : "model_" + result;
+    return !usable ? "model_" + result : is_taken(result) ? result + "_" : result;
 }
 
 std::string model_to_header(const TrainedModel& model, const std::string& name_space) {

@@ -12,7 +12,8 @@ namespace dfdyn::tools {
 /// Its numbers equal those of `model_to_json`, bit for bit in single precision.
 std::string model_to_header(const TrainedModel& model, const std::string& name_space);
 
-/// Converts a file's stem to a C++ identifier: `my-arm 2` becomes `my_arm_2`, `2dof` becomes `model_2dof`.
+/// Converts a file's stem to a C++ identifier: `my-arm 2` becomes `my_arm_2`, `2dof` becomes `model_2dof`,
+/// and the keyword `class` becomes `class_`.
 std::string to_identifier(const std::string& stem);
 
 } // namespace dfdyn::tools
