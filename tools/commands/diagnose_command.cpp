@@ -5,6 +5,7 @@
 #include "tools/base/system/progress.hpp"
 #include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/model_files.hpp"
@@ -20,6 +21,7 @@
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
 #include "tools/diagnosis/output/error_sections.hpp"
 #include "tools/diagnosis/recordings/name_from_recordings.hpp"
+#include "tools/training/physics/torque_constants.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -58,21 +60,6 @@ struct DiagnoseOptions {
     }
 };
 
-void check_torque_constants(const DiagnoseOptions& options, OutputKind outputs, std::size_t joints) {
-    const std::vector<double>& constants = options.torque_constants;
-    if (constants.empty()) {
-        return;
-    }
-    if (outputs != OutputKind::motor_current) {
-        throw InputError("--torque-constants: expected with --outputs i, found with --outputs " +
-                         options.outputs);
-    }
-    if (constants.size() != joints) {
-        throw InputError("--torque-constants: expected " + std::to_string(joints) +
-                         ", one per joint, found " + std::to_string(constants.size()));
-    }
-}
-
 void check_changed(const DiagnoseOptions& options, OutputKind outputs, std::size_t recordings) {
     if (!options.changed.empty() && (recordings < 2 || outputs == OutputKind::wrench)) {
         throw InputError(
@@ -91,6 +78,7 @@ DiagnosisWork run_diagnosis(const Robot& robot, std::vector<Recording>& recordin
     how.torque_constants = options.torque_constants;
     how.measure = !options.quick;
     how.check_setup = !options.no_setup_check;
+    how.parts = recordings;
     how.progress = [&](int) { progress.update(++rounds); };
     const SeveralRecordings several = fit_recordings(robot, recordings, how, !options.changed.empty());
     if (!options.changed.empty() && !several.answered()) {
@@ -163,12 +151,27 @@ void check_folders(const DiagnoseOptions& options) {
     }
 }
 
+/// Prints why the diagnosis is refused, one line for each reason.
+int exit_status(const Diagnosis& diagnosis, const std::vector<Recording>& recordings) {
+    std::vector<std::string> names;
+    for (const Recording& recording : recordings) {
+        names.push_back(shown(recording.source));
+    }
+    for (const Suspicion& suspicion : diagnosis.suspicions) {
+        if (!suspicion.code.empty()) {
+            std::cerr << "dfdyn: " << (suspicion.recording.empty() ? listed(names) + ": " : "")
+                      << suspicion.words() << '\n';
+        }
+    }
+    return refused(diagnosis) ? 1 : 0;
+}
+
 int run(const DiagnoseOptions& options) {
     const JsonOutput output(options.json);
     check_distinct(options.all_files(), options.recordings.with({options.robot.urdf}));
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
-    check_torque_constants(options, outputs, robot.joints.size());
+    check_torque_constants(options.torque_constants, outputs, robot.joints.size());
     std::vector<Recording> recordings = options.recordings.read_each_once(columns_for(robot, outputs));
     check_changed(options, outputs, recordings.size());
     check_folders(options);
@@ -194,7 +197,7 @@ int run(const DiagnoseOptions& options) {
     output.print(findings);
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
     std::cout << "report: " << options.page().string() << '\n';
-    return refused(work.diagnosis) ? 1 : 0;
+    return exit_status(work.diagnosis, recordings);
 }
 
 /// Adds the options for what the diagnosis writes.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/diagnosis.hpp"
 
+#include "tools/base/text/text.hpp"
 #include "tools/diagnosis/verdict/extension_errors.hpp"
 #include "tools/diagnosis/verdict/findings.hpp"
 #include "tools/diagnosis/verdict/joint_units.hpp"
@@ -23,14 +24,17 @@ namespace {
 /// Returns the suspicions about the set-up, mistakes first.
 std::vector<Suspicion> suspicions_of_setup(const Robot& robot, const Recording& recording,
                                            const DiagnosisOptions& options) {
-    SetupFindings findings = check_setup(recording, {options.outputs, &robot, options.torque_constants});
-    std::ranges::stable_sort(findings, std::ranges::greater(), &SetupFinding::severity);
+    const bool several = options.parts.size() > 1;
     std::vector<Suspicion> suspicions;
-    for (const SetupFinding& finding : findings) {
-        const bool mistake = finding.severity == Severity::mistake;
-        suspicions.push_back({finding.text, mistake ? std::string(name_of(finding.fault)) : "",
-                              mistake ? finding.columns : ""});
+    for (const Recording& part : several ? options.parts : std::span(&recording, 1)) {
+        for (const SetupFinding& finding :
+             check_setup(part, {options.outputs, &robot, options.torque_constants})) {
+            const bool mistake = finding.severity == Severity::mistake;
+            suspicions.push_back({finding.text, mistake ? std::string(name_of(finding.fault)) : "",
+                                  mistake ? finding.columns : "", several ? shown(part.source) : ""});
+        }
     }
+    std::ranges::stable_sort(suspicions, {}, [](const Suspicion& one) { return one.code.empty(); });
     return suspicions;
 }
 

@@ -35,6 +35,10 @@ struct Suspicion {
     std::string text;       ///< one sentence
     std::string code = {};  ///< as in `refusals` of diagnosis.json if nothing can be named for it; else empty
     std::string where = {}; ///< with a code: names of the columns concerned
+    std::string recording = {}; ///< the one of several that it is about; empty: all
+
+    /// Returns the sentence after the recording's name.
+    std::string words() const { return recording.empty() ? text : recording + ": " + text; }
 };
 
 /// Upper frequency limit for the error that a cause reduces.
@@ -96,6 +100,7 @@ struct Diagnosis {
     std::vector<std::string> output_units; ///< as measured: A, N·m or N
     std::vector<std::string> torque_units; ///< of the causes' contributions to the outputs: N·m or N
     std::vector<Suspicion> suspicions;
+    std::string scope = "the whole recording"; ///< rows that were diagnosed
     /// On the held-out time, or over the whole recording without one; of the samples as measured.
     ErrorMeasure nominal, extended;
     ErrorMeasure causes;        ///< of the causes found, also where plain least squares replaces them
@@ -129,7 +134,10 @@ struct DiagnosisOptions {
     /// Measured unit per N·m of currents, as for several recordings; empty: from the constants or the
     /// recording.
     Eigen::VectorXd torque_gains = {};
-    bool measure = true;     ///< whether to measure the held-out error, which doubles the run time
+    bool measure = true; ///< whether to measure the held-out error, which doubles the run time
+    /// Recordings that are joined in the diagnosed one: the set-up of each is checked; empty: it is a single
+    /// one.
+    std::span<const Recording> parts = {};
     bool check_setup = true; ///< false: continues even if units, clock, columns or signs look wrong
     std::function<void(int round)> progress = {};
     std::span<const Effect> effects = effect_catalogue(); ///< that can be named

@@ -111,7 +111,7 @@ ordered_json textbook_json(const Diagnosis& diagnosis) {
 ordered_json texts(const std::vector<Suspicion>& suspicions) {
     ordered_json json = ordered_json::array();
     for (const Suspicion& suspicion : suspicions) {
-        json.push_back(suspicion.text);
+        json.push_back(suspicion.words());
     }
     return json;
 }
@@ -120,7 +120,8 @@ ordered_json refusals(const std::vector<Suspicion>& suspicions) {
     ordered_json json = ordered_json::array();
     for (const Suspicion& suspicion : suspicions) {
         if (!suspicion.code.empty()) {
-            json.push_back({{"code", suspicion.code}, {"where", suspicion.where}, {"text", suspicion.text}});
+            json.push_back(
+                {{"code", suspicion.code}, {"where", suspicion.where}, {"text", suspicion.words()}});
         }
     }
     return json;

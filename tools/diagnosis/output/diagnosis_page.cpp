@@ -79,22 +79,27 @@ std::string causes_sentence(const Diagnosis& diagnosis) {
 }
 
 std::string gain_sentence(const Diagnosis& diagnosis) {
-    const bool held_out = has_held_out(diagnosis);
-    const Eigen::Index worst = worst_output(diagnosis.nominal);
-    if (!held_out) {
+    if (!has_held_out(diagnosis)) {
         return "The error on held-out time was not measured.";
     }
+    const Eigen::Index worst = worst_output(diagnosis.nominal);
+    const double before = diagnosis.nominal.rms[worst];
+    const double after = diagnosis.extended.rms[worst];
     return std::string("On time that fitted nothing, the error with them is ")
         .append(percent(diagnosis.extended.nrmse.minCoeff()))
         .append(" to ")
         .append(percent(diagnosis.extended.nrmse.maxCoeff()))
         .append(" of the outputs' deviation; on ")
         .append(diagnosis.output_names[static_cast<std::size_t>(worst)])
-        .append(" it falls from ")
-        .append(rounded_text(diagnosis.nominal.rms[worst]))
+        .append(after < before   ? " it falls from "
+                : after > before ? " it rises from "
+                                 : " it stays from ")
+        .append(rounded_text(before))
         .append(" to ")
-        .append(rounded_text(diagnosis.extended.rms[worst]))
-        .append(".");
+        .append(rounded_text(after))
+        .append(" ")
+        .append(diagnosis.output_units[static_cast<std::size_t>(worst)])
+        .append(" rms.");
 }
 
 /// Returns a summary of three sentences.
@@ -103,7 +108,7 @@ std::string summary(const DiagnosisCase& one) {
     if (diagnosis.nominal.rms.size() == 0 || one.work.fitted_effects.candidates.empty()) {
         return "The recording " + recording_names(one.recordings) +
                " cannot answer what the simulation gets wrong. The reasons are below. No cause is named, and "
-               "no model was written.";
+               "there is no extended model.";
     }
     return errors_sentence(one) + " " + causes_sentence(diagnosis) + " " + gain_sentence(diagnosis);
 }
@@ -111,7 +116,7 @@ std::string summary(const DiagnosisCase& one) {
 PageSection suspicion_section(const Diagnosis& diagnosis) {
     PageSection section{"First of all: is the recording what it should be?", {}, {}, {}};
     for (const Suspicion& suspicion : diagnosis.suspicions) {
-        section.paragraphs.push_back("Suspicion: " + suspicion.text + ".");
+        section.paragraphs.push_back("Suspicion: " + suspicion.words() + ".");
     }
     return section;
 }
@@ -141,7 +146,7 @@ ReportTable error_table(const Diagnosis& diagnosis) {
                                 instant_text(diagnosis.heldout_to_s) +
                                 ", which neither chose nor fitted anything: the effects behind these figures "
                                 "were found in the time before."
-                          : std::string("Over the whole recording, which the extended model was fitted to.");
+                          : "Over " + diagnosis.scope + ", which the extended model was fitted to.";
     for (std::size_t k = 0; k < diagnosis.output_names.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
         table.rows.push_back({diagnosis.output_names[k], diagnosis.output_units[k],
@@ -181,9 +186,8 @@ ReportTable findings_table(const DiagnosisCase& one) {
                       {},
                       {}};
     table.note =
-        "Confidence: of all causes that are given 0.9, about nine in ten are right. Errors: rms over "
-        "the whole recording, below " +
-        rounded_text(gains_below_hz) +
+        "Confidence: of all causes that are given 0.9, about nine in ten are right. Errors: rms over " +
+        diagnosis.scope + ", below " + rounded_text(gains_below_hz) +
         " Hz (all of it, for what shows above only), without and with this one effect, in N·m or N. Extended "
         "model: adapting, as coefficients that start here and go on being learned; constant, in its "
         "geometry, gravity or gains; as Coulomb friction of the same level, for the model's columns have no "
@@ -286,7 +290,9 @@ std::string diagnosis_page(const DiagnosisCase& one) {
             page.sections.push_back(finding_section(one.work, diagnosis.findings[i], i + 1));
         }
         page.sections.push_back(rest_section(one.work));
-        page.sections.push_back(online_section(one.online, diagnosis));
+        if (!one.online.learners.empty()) {
+            page.sections.push_back(online_section(one.online, diagnosis));
+        }
     }
     return render_figure_page(page);
 }

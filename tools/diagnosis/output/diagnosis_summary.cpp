@@ -20,7 +20,7 @@ constexpr double sure = 0.9;
 
 void print_suspicions(std::ostream& out, const Diagnosis& diagnosis) {
     for (const Suspicion& suspicion : diagnosis.suspicions) {
-        out << "! " << suspicion.text << '\n';
+        out << "! " << suspicion.words() << '\n';
     }
     if (!diagnosis.suspicions.empty()) {
         out << '\n';
@@ -45,7 +45,7 @@ void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
         out << "on held-out time (" << instant_text(diagnosis.heldout_from_s) << " to "
             << instant_text(diagnosis.heldout_to_s) << " fitted nothing):\n";
     } else {
-        out << "over the whole recording:\n";
+        out << "over " << diagnosis.scope << ":\n";
     }
     for (std::size_t k = 0; k < diagnosis.output_names.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);

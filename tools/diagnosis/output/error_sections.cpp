@@ -84,7 +84,8 @@ ReportTable rest_table(const DiagnosisWork& work, const Eigen::MatrixXd& rest) {
                       {"output", "unit", "rms left", "of the output's deviation", "autocorrelation, lag 1"},
                       {},
                       {}};
-    table.note = "Over the whole recording, low-passed against aliasing, of the model fitted to all of it. "
+    table.note = "Over " + work.diagnosis.scope +
+                 ", low-passed against aliasing, of the model fitted to all of it. "
                  "Autocorrelation 0: white; near 1: slow, so that something is still to be named.";
     const Eigen::MatrixXd measured = in_output_units(work, work.measured);
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
@@ -142,9 +143,9 @@ void write_comparison_csv(std::ostream& out, const DiagnosisWork& work) {
 PageSection comparison_section(const DiagnosisWork& work, const std::string& full_data) {
     PageSection section{"Measured, simulated, extended", {}, {}, {}};
     section.paragraphs.push_back(
-        std::string("Simulated: the rigid body of the robot's file along the measured motion. Extended: with "
-                    "all named effects, or plain least squares where that errs less, fitted to the whole "
-                    "recording. The first 20 s of the ") +
+        "Simulated: the rigid body of the robot's file along the measured motion. Extended: with "
+        "all named effects, or plain least squares where that errs less, fitted to " +
+        work.diagnosis.scope + ". The first 20 s of the " +
         (has_held_out(work.diagnosis) ? "held-out time" : "recording") + " are shown.");
     if (!full_data.empty()) {
         section.paragraphs.push_back(

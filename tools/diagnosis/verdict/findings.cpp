@@ -7,6 +7,7 @@
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/verdict/finding_gain.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
+#include "tools/diagnosis/verdict/joint_units.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -97,13 +98,14 @@ Finding of_push(const StationaryContact& push) {
     return finding;
 }
 
-std::string held_words(const StationaryContact& push) {
-    const auto interval = [](double value, double deviation) {
-        return rounded_text(value) + " ± " + rounded_text(deviations_of_95 * deviation) + " N·m";
+std::string held_words(const StationaryContact& push, bool prismatic) {
+    const auto interval = [&](double value, double deviation) {
+        return rounded_text(value) + " ± " + rounded_text(deviations_of_95 * deviation) + " " +
+               unit_at_joint("N·m", prismatic);
     };
     return numbered("joint", push.joint) + " stands, where its friction can change by " +
-           interval(push.held, push.held_deviation) + ", and its torque changes by " +
-           interval(std::abs(push.change), push.change_deviation) + "; ";
+           interval(push.held, push.held_deviation) + ", and its " + (prismatic ? "force" : "torque") +
+           " changes by " + interval(std::abs(push.change), push.change_deviation) + "; ";
 }
 
 /// Returns the chosen named effects that reduce the error.
@@ -133,7 +135,7 @@ std::vector<Finding> of_pushes(const DiagnosisSignals& signals, const std::vecto
         Eigen::MatrixXd contribution = Eigen::MatrixXd::Zero(signals.rows(), signals.outputs());
         contribution.col(static_cast<Eigen::Index>(push.joint)) = push.share;
         gains.tell(finding, contribution);
-        finding.evidence = held_words(push) + finding.evidence;
+        finding.evidence = held_words(push, signals.robot.joints[push.joint].prismatic) + finding.evidence;
         findings.push_back(std::move(finding));
     }
     return findings;
