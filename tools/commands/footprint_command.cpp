@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/size_options.hpp"
@@ -24,11 +25,11 @@ int run(const FootprintOptions& options) {
     const JsonOutput output(options.json);
     output.print(footprint_json(model, target));
     print_footprint(std::cout, model, target);
-    const TargetBudget budget = options.sizes.budget();
-    if (fits(needs_of(model), budget)) {
+    const std::string excess = excess_text(needs_of(model), options.sizes.budget());
+    if (excess.empty()) {
         return 0;
     }
-    std::cerr << "beyond the budget: " << to_text(budget) << '\n';
+    std::cerr << "dfdyn: " << shown(options.model) << ": beyond the budget: " << excess << '\n';
     return 1;
 }
 

@@ -9,6 +9,7 @@
 
 #include <iostream>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -49,9 +50,17 @@ void print_reference(const CLI::App& program) {
 }
 
 int run(const CLI::App& program, const ManOptions& options) {
-    if ((options.folder.empty() ? 0 : 1) + (options.page.empty() ? 0 : 1) + (options.reference ? 1 : 0) > 1) {
-        throw InputError(
-            "man: expected one of a page, -o and --reference, which have all pages, found several");
+    std::vector<std::string> wanted;
+    for (const auto& [given, name] : {std::pair{!options.page.empty(), "page " + in_quotes(options.page)},
+                                      std::pair{!options.folder.empty(), std::string("-o")},
+                                      std::pair{options.reference, std::string("--reference")}}) {
+        if (given) {
+            wanted.push_back(name);
+        }
+    }
+    if (wanted.size() > 1) {
+        throw InputError("man: expected one of a page, -o and --reference, which have all pages, found " +
+                         listed(wanted));
     }
     if (options.reference) {
         print_reference(program);

@@ -2,9 +2,11 @@
 #include "tools/commands/replay_run.hpp"
 
 #include "tools/base/bag/bag.hpp"
+#include "tools/base/numerics/quantile.hpp"
 #include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/commands/options/json_output.hpp"
@@ -214,27 +216,44 @@ void write_results(const ReplayOptions& options, std::span<const TrainedModel> m
 
 bool predicted(const ReplayedRecording& replayed) { return replayed.totals.predicted > 0; }
 
-/// Prints on stderr the most frequent reason why a recording had no prediction.
-void explain_no_prediction(const ReplayedRecording& replayed) {
+/// Returns what was expected and found where `reason` is the most frequent one; empty if nothing is known.
+std::string reason_detail(const ReplayedRecording& replayed, std::string_view reason, double period_s) {
+    if (reason == name(Reason::position_out_of_range) && !replayed.beyond_limit.empty()) {
+        return ": " + replayed.beyond_limit;
+    }
+    std::vector<double> steps_s;
+    for (std::size_t tick = 1; tick < replayed.time_s.size(); ++tick) {
+        steps_s.push_back(replayed.time_s[tick] - replayed.time_s[tick - 1]);
+    }
+    if (reason != name(Reason::gap) || steps_s.empty()) {
+        return "";
+    }
+    return ": expected " + rounded_text(period_s) + " s between rows, found " +
+           rounded_text(median(std::move(steps_s))) + " s";
+}
+
+/// Prints on stderr the most frequent reason why a recording had no prediction. `period_s`: of the model.
+void explain_no_prediction(const ReplayedRecording& replayed, double period_s) {
     const auto& counts = replayed.totals.reasons;
-    std::cerr << shown(replayed.source) << ": nothing was predicted: ";
+    std::cerr << "dfdyn: " << shown(replayed.source) << ": nothing was predicted: ";
     if (counts.empty()) {
         std::cerr << "it has no ticks\n";
         return;
     }
     const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
     std::cerr << most->second << " of " << replayed.totals.ticks << " ticks " << most->first
+              << reason_detail(replayed, most->first, period_s)
               << "; check that units, sample period and columns are those of the model's training\n";
 }
 
 /// Exit status. A bus without a prediction is a failure; CSV recordings are a failure if none had a
 /// prediction.
-int exit_status(std::span<const ReplayedRecording> replayed, bool bus) {
+int exit_status(std::span<const ReplayedRecording> replayed, double period_s, bool bus) {
     const auto count = std::ranges::count_if(replayed, predicted);
     const bool done = bus ? count == std::ssize(replayed) : count > 0;
     for (const ReplayedRecording& one : replayed) {
         if (!done && !predicted(one)) {
-            explain_no_prediction(one);
+            explain_no_prediction(one, period_s);
         }
     }
     return done ? 0 : 1;
@@ -259,7 +278,7 @@ int run_replay_command(const ReplayOptions& options) {
     if (options.bus.empty()) {
         const std::vector<ReplayedRecording> replayed = replay_all(options, models, replaying);
         write_results(options, models, replaying, replayed, output);
-        return exit_status(replayed, false);
+        return exit_status(replayed, models.front().sample_period_s, false);
     }
     std::vector<ReplayedBus> buses = replay_bus(options, models, replaying);
     std::vector<ReplayedRecording> replayed;
@@ -270,7 +289,7 @@ int run_replay_command(const ReplayOptions& options) {
     for (const ReplayedBus& one : buses) {
         print_bus(std::cout, one.bus);
     }
-    return exit_status(replayed, true);
+    return exit_status(replayed, models.front().sample_period_s, true);
 }
 
 } // namespace dfdyn::tools

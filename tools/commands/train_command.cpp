@@ -180,7 +180,7 @@ ModelTraining model_training(const TrainOptions& options, OutputKind outputs) {
 }
 
 /// Reports given options that have no influence here.
-void note_ignored(const TrainOptions& options, OutputKind outputs) {
+void note_ignored(const TrainOptions& options) {
     const std::string model = "model " + options.structure;
     const Structure& structure = tools::structure(options.structure);
     const bool physics = structure.has_physics();
@@ -196,8 +196,6 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
     note(!physics, {"--effects", "--sign-velocity", "--own-motion"}, model);
     note(!structure.learns_parameters(), {"--prior"}, model);
     note(!physics, {"--torque-constants"}, model);
-    note(physics && outputs != OutputKind::motor_current, {"--torque-constants"},
-         "--outputs " + options.outputs);
     note(cross_validation, {"--starts", "--refinement"}, "--hyper CV");
     note(!derivatives, {"--relevance"}, "input " + options.input);
     note(derivatives && !structure.features, {"--relevance"}, model);
@@ -251,8 +249,10 @@ int run(const TrainOptions& options) {
     check_outputs({options.model, options.header}, options.recordings.with({options.robot.urdf}));
     const OutputKind outputs = parse_output_kind(options.outputs);
     ModelTraining training = model_training(options, outputs);
-    note_ignored(options, outputs);
+    note_ignored(options);
     const std::optional<Robot> robot = robot_of(options, outputs, training);
+    const std::size_t constants = options.torque_constants.size();
+    check_torque_constants(options.torque_constants, outputs, robot ? robot->joints.size() : constants);
     const std::vector<Recording> recordings = read_recordings(options, outputs, training, robot);
     if (!options.setup.accept(recordings, {outputs, robot ? &*robot : nullptr, options.torque_constants})) {
         return 1;

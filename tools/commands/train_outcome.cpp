@@ -61,8 +61,10 @@ void print_kernel(const TrainedModel& model) {
 
 void print_outcome(const ModelTrainingResult& result, const std::string& trained_on) {
     const TrainedModel& model = result.model;
-    std::cout << "trained " << model.structure << " on " << trained_on << ", rows " << model.training.rows
-              << " (" << model.training.likelihood_rows << " in the exact kernel)\n";
+    const std::string& rows = model.training.rows;
+    std::cout << "trained " << model.structure << " on " << trained_on << ", "
+              << (rows == ":" ? "all rows" : "rows " + rows) << " (" << model.training.likelihood_rows
+              << " in the exact kernel)\n";
     if (!result.hold_out.empty()) {
         print_hold_out(result.hold_out);
     } else if (!model.training.all_starts.empty()) {

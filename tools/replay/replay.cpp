@@ -3,6 +3,7 @@
 
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/model/inputs/input_description.hpp"
 
@@ -158,6 +159,28 @@ void Replayer::append(const Tick& tick, std::span<const double> output) {
     replayed_.duration_us.push_back(std::chrono::duration<double, std::micro>(tick.duration).count());
 }
 
+namespace {
+
+/// Returns the first position of `recording` beyond the limit of a model, in words; empty: none.
+std::string first_beyond_limit(std::span<const TrainedModel> models, const Recording& recording) {
+    for (std::size_t row = 0; row < recording.row_count(); ++row) {
+        const std::span<const double> position = recording.position.row(row);
+        for (const TrainedModel& model : models) {
+            const std::vector<double>& limits = model.limits.position_rad;
+            for (std::size_t joint = 0; joint < std::min(limits.size(), position.size()); ++joint) {
+                if (std::abs(position[joint]) > limits[joint]) {
+                    return recording.position.names[joint] + ": expected from " +
+                           rounded_text(-limits[joint]) + " to " + rounded_text(limits[joint]) + ", found " +
+                           rounded_text(position[joint]);
+                }
+            }
+        }
+    }
+    return "";
+}
+
+} // namespace
+
 ReplayedRecording replay(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
                          const Recording& recording, std::size_t horizon,
                          const std::function<void(std::size_t)>& on_tick) {
@@ -172,7 +195,9 @@ ReplayedRecording replay(RuntimeEstimator& estimator, std::span<const TrainedMod
         replayer.tick(recording.time_s[row], sample_at(recording, row));
         on_tick(row + 1);
     }
-    return replayer.finish();
+    ReplayedRecording replayed = replayer.finish();
+    replayed.beyond_limit = first_beyond_limit(models, recording);
+    return replayed;
 }
 
 double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, std::size_t output,

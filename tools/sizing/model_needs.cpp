@@ -10,7 +10,9 @@
 #include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/model/structure.hpp"
 
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace dfdyn::tools {
 
@@ -116,18 +118,48 @@ TrainedModel with_feature_count(TrainedModel model, int feature_count) {
     return model;
 }
 
+namespace {
+
+std::string byte_words(std::int64_t bytes) {
+    return bytes < 1024 ? std::to_string(bytes) + (bytes == 1 ? " byte" : " bytes")
+                        : number_text(static_cast<double>(bytes) / 1024) + " KiB";
+}
+
+/// Rounds up to tenths of KiB, so that what is beyond a bound is larger in words, too.
+std::string rounded_byte_words(std::int64_t bytes) {
+    return bytes < 1024 ? byte_words(bytes)
+                        : number_text(std::ceil(static_cast<double>(bytes) / 102.4) / 10) + " KiB";
+}
+
+} // namespace
+
 bool fits(const ModelNeeds& needs, const TargetBudget& budget) {
     return needs.flash_bytes <= budget.flash_bytes && needs.ram_bytes <= budget.ram_bytes &&
            needs.tick_operations <= budget.tick_operations;
 }
 
+std::string excess_text(const ModelNeeds& needs, const TargetBudget& budget) {
+    std::string text;
+    const auto add = [&text](const char* what, const std::string& most, const std::string& found) {
+        text.append(text.empty() ? "" : "; ")
+            .append(std::string(what) + ": expected at most " + most + ", found " + found);
+    };
+    if (needs.flash_bytes > budget.flash_bytes) {
+        add("flash", byte_words(budget.flash_bytes), rounded_byte_words(needs.flash_bytes));
+    }
+    if (needs.ram_bytes > budget.ram_bytes) {
+        add("RAM", byte_words(budget.ram_bytes), rounded_byte_words(needs.ram_bytes));
+    }
+    if (needs.tick_operations > budget.tick_operations) {
+        add("multiply-adds per tick", std::to_string(budget.tick_operations),
+            std::to_string(needs.tick_operations));
+    }
+    return text;
+}
+
 std::string to_text(const TargetBudget& budget) {
     constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
-    const auto kib = [](std::int64_t bytes) {
-        return bytes == unlimited ? "unlimited"
-               : bytes < 1024     ? std::to_string(bytes) + (bytes == 1 ? " byte" : " bytes")
-                                  : number_text(static_cast<double>(bytes) / 1024) + " KiB";
-    };
+    const auto kib = [](std::int64_t bytes) { return bytes == unlimited ? "unlimited" : byte_words(bytes); };
     return "flash " + kib(budget.flash_bytes) + ", RAM " + kib(budget.ram_bytes) + ", " +
            (budget.tick_operations == unlimited ? "unlimited" : std::to_string(budget.tick_operations)) +
            " multiply-adds per tick";

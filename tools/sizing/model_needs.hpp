@@ -40,6 +40,9 @@ TrainedModel with_feature_count(TrainedModel model, int feature_count);
 
 bool fits(const ModelNeeds& needs, const TargetBudget& budget);
 
+/// Returns what exceeds the budget, like "flash: expected at most 2 KiB, found 24.1 KiB"; empty: nothing.
+std::string excess_text(const ModelNeeds& needs, const TargetBudget& budget);
+
 /// Returns text like "flash 61.2 KiB, RAM 40.0 KiB, 70000 multiply-adds per tick".
 std::string to_text(const ModelNeeds& needs);
 std::string to_text(const TargetBudget& budget);

@@ -33,6 +33,17 @@ bool have_derivatives(std::span<const Recording> recordings) {
     });
 }
 
+/// Returns which derivatives a recording has, and which it lacks.
+std::string found_derivatives(const Recording& recording) {
+    const auto names = [&](const char* quantity) {
+        return quantity + std::string("1…") + quantity + std::to_string(recording.joint_count());
+    };
+    const bool velocity = recording.velocity.present();
+    return velocity == recording.acceleration.present()
+               ? "none"
+               : names(velocity ? "qd" : "qdd") + ", but no " + names(velocity ? "qdd" : "qd");
+}
+
 /// Returns the joints' effort limits; 0 if the URDF has none.
 std::vector<double> joint_efforts(const Robot& robot) {
     std::vector<double> efforts;
@@ -52,23 +63,15 @@ struct PhysicsColumnsOf {
 /// Returns the torque gains for currents; empty for other outputs.
 std::vector<TorqueGain> torque_gains(const PreparedTraining& prepared, OutputKind outputs,
                                      const RobotPhysics& physics) {
-    const auto count = static_cast<std::size_t>(prepared.data.outputs.cols());
     if (outputs != OutputKind::motor_current) {
         return {};
     }
     if (physics.torque_constants.empty()) {
         return estimate_torque_gains(physics.robot, prepared.data, physics.sign_velocity);
     }
-    if (physics.torque_constants.size() != count) {
-        throw InputError("torque constants: expected " + std::to_string(count) + ", one per joint, found " +
-                         std::to_string(physics.torque_constants.size()));
-    }
+    check_torque_constants(physics.torque_constants, outputs, physics.robot.joints.size());
     std::vector<TorqueGain> gains;
     for (const double constant : physics.torque_constants) {
-        if (!(constant > 0)) {
-            throw InputError("torque constants: expected positive numbers, found " +
-                             std::to_string(constant));
-        }
         gains.push_back({1 / constant, TorqueGain::Source::given});
     }
     return gains;
@@ -177,7 +180,8 @@ PreparedTraining prepare_training(std::span<const Recording> recordings, const M
     const bool measured = have_derivatives(recordings);
     if (training.derivatives == DerivativeSource::measured && !measured) {
         throw InputError(recordings.front().source +
-                         ": expected columns qd1… and qdd1… for measured derivatives, found none");
+                         ": expected columns qd1… and qdd1… for measured derivatives, found " +
+                         found_derivatives(recordings.front()));
     }
     if (measured && training.derivatives != DerivativeSource::estimated) {
         prepared.derivatives = Derivatives::measured;

@@ -141,6 +141,13 @@ TEST_CASE("a budget has the usual units") {
         CAPTURE(budget);
         CHECK(run_program(directory, "footprint --model " + in + "/m.json --flash " + budget).status == 0);
     }
+    const Outcome beyond = run_program(directory, "footprint --model " + in + "/m.json --flash 2K");
+    CHECK(beyond.status == 1);
+    CHECK_THAT(beyond.error,
+               Catch::Matchers::StartsWith("dfdyn: " + in +
+                                           "/m.json: beyond the budget: flash: expected at most "
+                                           "2 KiB, found ") &&
+                   Catch::Matchers::EndsWith(" KiB\n"));
 }
 
 TEST_CASE("with --quiet a command keeps warnings and errors, and drops notes") {

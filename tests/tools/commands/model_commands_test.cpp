@@ -2,9 +2,12 @@
 // Models with a robot from the command line with simulate, train and replay.
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
+#include "tools/base/text/number.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -209,6 +212,21 @@ TEST_CASE("unusable training options for a robot are rejected with one line") {
                              " --outputs tau --input STD --derivatives measured -o " +
                              bench.path("model.json")),
                   "expected columns qd1… and qdd1… for measured derivatives, found none");
+    std::string velocities = "t,q1,q2,qd1,qd2,tau1,tau2\n";
+    for (int row = 0; row < 100; ++row) {
+        const double time_s = 0.01 * row;
+        velocities += dfdyn::tools::number_text(time_s);
+        for (const double value : {std::sin(time_s), std::cos(time_s), std::cos(time_s), -std::sin(time_s),
+                                   std::sin(2 * time_s), std::cos(2 * time_s)}) {
+            velocities += "," + dfdyn::tools::number_text(value);
+        }
+        velocities += "\n";
+    }
+    std::ofstream(bench.path("velocities.csv")) << velocities;
+    check_refused(bench.call("train --log " + bench.path("velocities.csv") +
+                             " --outputs tau --input STD --derivatives measured -o " +
+                             bench.path("model.json")),
+                  "for measured derivatives, found qd1…qd2, but no qdd1…qdd2");
 }
 
 TEST_CASE("a replay of an unsuitable recording is rejected with one line") {

@@ -89,11 +89,13 @@ void check_refused(const Bench& bench, const std::string& arguments, const std::
 
 TEST_CASE("train reports mistakes visible in the recording alone with their remedy before it starts") {
     const auto [mistake, words] = GENERATE(table<std::string, std::string>({
-        {"positions in degrees", "looks like degrees; multiply by pi/180"},
+        {"positions in degrees", "looks like degrees; multiply by pi/180, or --units q=deg"},
         {"time in ms", "column t: expected seconds, found rows"},
-        {"time in µs", "microseconds; divide t by 1e6"},
-        {"time in ns", "nanoseconds; divide t by 1e9"},
+        {"time in ms", "milliseconds; divide t by 1000, or --units t=ms"},
+        {"time in µs", "microseconds; divide t by 1e6, or --units t=us"},
+        {"time in ns", "nanoseconds; divide t by 1e9, or --units t=ns"},
         {"outputs in mA", "columns i1, i2, i3, i4, i5, i6: expected A, found up to"},
+        {"outputs in mA", "looks like mA; divide by 1000, or --units i=mA"},
         {"one output dead", "column i2: expected values that vary, found 0 in every row"},
         {"one position wrapped", "column q2: expected a continuous angle"},
     }));
@@ -138,6 +140,7 @@ TEST_CASE("a recording with a mistake trains with --no-setup-check and a correct
     CAPTURE(checked.error);
     CHECK(checked.status == 0);
     CHECK_THAT(checked.error, !ContainsSubstring("warning: "));
+    CHECK_THAT(checked.out, ContainsSubstring(", all rows (60 in the exact kernel)"));
     CHECK_THAT(right.call("train --help").out, ContainsSubstring("--no-setup-check"));
 }
 
@@ -154,6 +157,8 @@ std::pair<Outcome, nlohmann::json> diagnose(const Bench& bench, const std::strin
 TEST_CASE("diagnose has the same check and the same option to skip it") {
     const Bench bench("outputs in mA");
     const auto [checked, refused] = diagnose(bench, "");
+    CHECK_THAT(checked.error, ContainsSubstring("dfdyn: " + bench.path("run.csv") +
+                                                ": columns i1, i2, i3, i4, i5, i6: expected A"));
     CHECK_THAT(checked.out, StartsWith("! columns i1, i2, i3, i4, i5, i6: expected A") &&
                                 ContainsSubstring("looks like mA"));
     CHECK(refused["findings"].empty());
@@ -162,6 +167,34 @@ TEST_CASE("diagnose has the same check and the same option to skip it") {
     const auto [unchecked, next] = diagnose(bench, "--no-setup-check", ":200"); // reports the next reason
     CHECK_THAT(unchecked.out, !ContainsSubstring("looks like mA") && ContainsSubstring("causes need 3 s"));
     CHECK(next["refusals"][0]["code"] == "too_little_information");
+}
+
+TEST_CASE("diagnose of several recordings names the one with a mistake") {
+    const Bench right("");
+    const Bench wrong("outputs in mA");
+    const Outcome outcome =
+        right.call("diagnose" + robot + "--outputs i --no-held-out --log " + right.path("run.csv") + ", " +
+                   wrong.path("run.csv") + " -o " + right.path("out"));
+    INFO(outcome.error);
+    CHECK(outcome.status == 1);
+    const std::string reason = wrong.path("run.csv") + ": columns i1, i2, i3, i4, i5, i6: expected A";
+    CHECK_THAT(outcome.out, StartsWith("! " + reason) && !ContainsSubstring(right.path("run.csv") + ": col"));
+    CHECK_THAT(outcome.error, ContainsSubstring("dfdyn: " + reason));
+    CHECK_THAT(file_content(right.path("out/diagnosis.json")), ContainsSubstring(reason));
+}
+
+TEST_CASE("identify has the same check and the same option to skip it") {
+    const Bench bench("positions in degrees");
+    const std::string call = "identify" + robot + "--outputs tau --columns 'tau=i*' --rows :1200 --log " +
+                             bench.path("run.csv") + " -o " + bench.path("p.json");
+    const Outcome checked = bench.call(call);
+    CHECK(checked.status == 1);
+    CHECK(checked.out.empty());
+    CHECK_THAT(checked.error, ContainsSubstring("dfdyn: " + bench.path("run.csv") + ": ") &&
+                                  ContainsSubstring("looks like degrees"));
+    CHECK_FALSE(std::filesystem::exists(bench.path("p.json")));
+    CHECK(bench.call(call + " --no-setup-check").status == 0);
+    CHECK(std::filesystem::exists(bench.path("p.json")));
 }
 
 TEST_CASE("diagnose reports an unusable clock even without the check") {
@@ -199,9 +232,18 @@ TEST_CASE("a replay without any prediction ends with status 1 and the reason") {
     const Outcome nothing = bench.call(replay + wrong);
     CAPTURE(nothing.out, nothing.error);
     CHECK(nothing.status == 1);
-    CHECK_THAT(nothing.error, ContainsSubstring(wrong + ": nothing was predicted: ") &&
+    CHECK_THAT(nothing.error, ContainsSubstring("dfdyn: " + wrong + ": nothing was predicted: ") &&
+                                  ContainsSubstring(" gap: expected 0.008 s between rows, found 8 s;") &&
                                   ContainsSubstring("check that units, sample period and columns"));
     CHECK(bench.call(replay + bench.path("run.csv")).status == 0);
+    Recording far = right_recording();
+    for (double& position : far.position.values) {
+        position *= 1000;
+    }
+    const Outcome beyond = bench.call(replay + directory.write("far.csv", csv(far)).string());
+    CAPTURE(beyond.error);
+    CHECK(beyond.status == 1);
+    CHECK_THAT(beyond.error, ContainsSubstring(" position_out_of_range: q1: expected from -"));
     // One of two recordings is predicted.
     CHECK(bench.call(replay + bench.path("run.csv") + "," + wrong).status == 0);
 }

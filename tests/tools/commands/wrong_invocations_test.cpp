@@ -75,6 +75,8 @@ void write_files(const TemporaryDirectory& folder) {
         {"upper.csv", "t,Q1,I1\n0,1,2\n0.1,1,2\n"},
         {"noq.csv", "t,x,y\n0,1,2\n1,2,3\n"},
         {"dup.csv", "t,q1,q1,i1\n0,1,2,3\n1,1,2,3\n"},
+        {"bus.log", "(1600000000.000000) can0 181#0000\n"},
+        {"wrench.csv", "t,q1,q2,q3,q4,q5,q6,fx,fy,fz,mx,my,mz\n0,0,0,0,0,0,0,0,0,0,0,0,0\n"},
         {"two.csv", "t,q1,q2,i1,i2\n0,1,2,3,4\n1,2,3,4,5\n"},
         {"bad.json", "{\"schema\": \"dfdyn.model/9\"}"},
         {"trunc.json", "{\"schema\": "},

@@ -3,6 +3,8 @@
 
 #include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/base/numerics/quantile.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
 #include "tools/model/chain_model.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -48,6 +51,25 @@ double gain_of(const VectorXd& current, const VectorXd& torque, const VectorXd& 
 }
 
 } // namespace
+
+void check_torque_constants(std::span<const double> constants, OutputKind outputs, std::size_t joints) {
+    if (constants.empty()) {
+        return;
+    }
+    if (outputs != OutputKind::motor_current) {
+        throw InputError(std::string("--torque-constants: expected with --outputs i, found with --outputs ") +
+                         (outputs == OutputKind::wrench ? "wrench" : "tau"));
+    }
+    if (constants.size() != joints) {
+        throw InputError("--torque-constants: expected " + std::to_string(joints) +
+                         ", one per joint, found " + std::to_string(constants.size()));
+    }
+    for (const double constant : constants) {
+        if (!(constant > 0)) {
+            throw InputError("--torque-constants: expected positive numbers, found " + number_text(constant));
+        }
+    }
+}
 
 std::vector<TorqueGain> estimate_torque_gains(const Robot& robot, const TrainingData& data,
                                               double sign_velocity) {

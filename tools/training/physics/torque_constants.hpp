@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/base/recording/recording.hpp"
 #include "tools/robot/robot.hpp"
 #include "tools/training/data/training_data.hpp"
 
+#include <span>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -18,6 +20,9 @@ struct TorqueGain {
     double gain = 1; ///< A/N·m, > 0
     Source source = Source::given;
 };
+
+/// Throws InputError unless `constants` (N·m/A) is empty or, for currents, has one positive number per joint.
+void check_torque_constants(std::span<const double> constants, OutputKind outputs, std::size_t joints);
 
 /// Estimates the gains of all joints, which are not part of the robot file: least squares of the measured
 /// current with the nominal rigid body's torque, viscous friction, Coulomb friction and an offset, over all
