@@ -270,8 +270,8 @@ TEMPLATE_TEST_CASE("rows with another noise variance are weighted as in the batc
           TestType::tolerance);
 }
 
-TEMPLATE_TEST_CASE("a target that changes at rest is followed within the memory, however long the rest", "", UdFloat,
-                   UdDouble) {
+TEMPLATE_TEST_CASE("a target that changes at rest is followed within the memory, however long the rest", "",
+                   UdFloat, UdDouble) {
     constexpr double forgetting_factor = 0.999;
     const Eigen::VectorXd row = Eigen::VectorXd::Constant(4, 0.5);
     LearnerUnderTest<TestType> learner(4, 1, 100, forgetting_factor);
