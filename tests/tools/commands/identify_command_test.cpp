@@ -122,7 +122,7 @@ TEST_CASE("identify rejects unusable input with one line") {
     const std::string log =
         "--log " + directory
                        .write("short.csv", "t,q1,q2,q3,q4,fx,fy,fz,mx,my,mz\n"
-                                           "0,0,0,0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0,0,0,0\n")
+                                           "0,0,0,0,0,0,0,0,0,0,0\n0.002,0,0,0,0,0,0,0,0,0,0\n")
                        .string();
     const std::string no_sensor = " --robot " DFDYN_TEST_DATA_DIR "/robots/ur5/ur5_robot.urdf --tip ee_link ";
     const std::string cases[] = {
