@@ -19,8 +19,8 @@
 /// missing. One stray stamp therefore costs one measurement.
 class StampClock {
   public:
-    static constexpr std::uint64_t longest_gap_ns = 100'000'000;
-    static constexpr int agreeing = 3;
+    static constexpr std::uint64_t longest_gap_ns = 100'000'000; ///< between two measurements
+    static constexpr int agreeing = 3;                           ///< stamps in a row that set the clock
 
     /// The next measurement is new if its stamp is this one or follows it.
     void restart(std::int64_t time_ns) {

@@ -89,7 +89,7 @@ class BlockArrowFootprint {
 
     /// Maximum over all calls.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
-        return frame_bytes + 72 * std::int64_t{sizeof(Scalar)};
+        return frame_bytes + 76 * std::int64_t{sizeof(Scalar)};
     }
 
   protected:

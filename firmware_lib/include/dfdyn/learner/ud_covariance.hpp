@@ -145,7 +145,7 @@ class UdCovariance {
 
     /// Maximum over all calls.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
-        return frame_bytes + 24 * std::int64_t{sizeof(Scalar)};
+        return frame_bytes + 32 * std::int64_t{sizeof(Scalar)};
     }
 
     template <class Self, class Visitor>
