@@ -28,7 +28,7 @@ int run(const ConvertOptions& options) {
     if (logs.size() != 1) {
         throw InputError("--log: expected one recording, found " + std::to_string(logs.size()));
     }
-    check_outputs({options.log}, {logs.front(), options.bus});
+    check_outputs({options.log}, options.recordings.with({options.bus}));
     const BusDescription description = read_bus_description(options.bus);
     ReadOptions columns;
     columns.joint_count = static_cast<std::size_t>(description.joint_count);

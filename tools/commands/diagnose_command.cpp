@@ -151,7 +151,7 @@ void check_folders(const DiagnoseOptions& options) {
     }
 }
 
-/// Prints why the diagnosis is refused, one line for each reason.
+/// Returns the exit status. Prints on stderr why the diagnosis is refused, one line for each reason.
 int exit_status(const Diagnosis& diagnosis, const std::vector<Recording>& recordings) {
     std::vector<std::string> names;
     for (const Recording& recording : recordings) {

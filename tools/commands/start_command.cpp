@@ -76,24 +76,21 @@ void say(const std::string& step) { std::cout << "\n== " << step << '\n'; }
 /// Reads the recordings with the outputs that they have: torques, otherwise currents, otherwise a wrench.
 Arm read_arm(const StartOptions& options) {
     Arm arm;
+    const bool chosen = !options.outputs.empty();
+    const OutputKind kind = chosen ? parse_output_kind(options.outputs) : OutputKind::joint_torque;
     ReadOptions columns;
-    if (options.outputs.empty()) {
-        columns.output_choices = {OutputKind::joint_torque, OutputKind::motor_current, OutputKind::wrench};
-    } else {
-        columns.outputs = parse_output_kind(options.outputs);
-    }
     if (!options.robot.urdf.empty()) {
-        arm.robot = options.robot.read(columns.outputs.value_or(OutputKind::joint_torque));
-        columns.joint_count = arm.robot->joints.size();
-        columns.joint_names = names_of_joints(*arm.robot);
+        arm.robot = options.robot.read(kind);
+        columns = columns_for(*arm.robot, kind);
     }
+    columns.outputs = chosen ? std::optional(kind) : std::nullopt;
+    columns.output_choices = {OutputKind::joint_torque, OutputKind::motor_current, OutputKind::wrench};
     try {
         arm.recordings = options.recordings.read_each_once(columns);
     } catch (const MissingColumns& failure) {
-        throw InputError(failure.what() +
-                         std::string(options.outputs.empty()
-                                         ? "; start also accepts motor currents (i) or a wrench as outputs"
-                                         : ""));
+        throw InputError(
+            failure.what() +
+            std::string(chosen ? "" : "; start also accepts motor currents (i) or a wrench as outputs"));
     }
     const Recording& first = arm.recordings.front();
     arm.outputs = kind_of_outputs(first.output.names, first.joint_count());

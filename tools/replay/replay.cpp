@@ -196,7 +196,9 @@ ReplayedRecording replay(RuntimeEstimator& estimator, std::span<const TrainedMod
         on_tick(row + 1);
     }
     ReplayedRecording replayed = replayer.finish();
-    replayed.beyond_limit = first_beyond_limit(models, recording);
+    if (replayed.totals.predicted == 0) {
+        replayed.beyond_limit = first_beyond_limit(models, recording);
+    }
     return replayed;
 }
 

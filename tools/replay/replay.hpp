@@ -41,7 +41,7 @@ struct ReplayedRecording {
     /// identified inertia; ticks × m each, NaN where the motion is unknown. Empty: there are none.
     std::vector<std::vector<double>> rigid_body;
     ReplayTotals totals;
-    /// first position of a recording beyond the limit of a model, in words; empty: none
+    /// If nothing was predicted: the first position beyond the limit of a model, in words; empty: none.
     std::string beyond_limit;
     std::size_t forgotten = 0; ///< removed ticks before the first one of the vectors, see ReplayMemory
 };

@@ -2,9 +2,6 @@
 // What the C++ of the documentation's pages takes for granted: the user's functions, and a model of his arm.
 #pragma once
 
-#include "dfdyn/control/disturbance_observer.hpp"
-#include "dfdyn/control/feed_forward.hpp"
-#include "dfdyn/control/learned_torque.hpp"
 #include "dfdyn/dfdyn.hpp"
 #include "examples/ur5/ur5_model.hpp"
 

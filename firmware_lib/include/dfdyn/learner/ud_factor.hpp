@@ -89,8 +89,7 @@ class UdFactor {
             row_[j] = row[j];
         }
         clear(gain_);
-        begin_at(0, noise_variance);
-        sweep_ = keep ? Sweep::keep : Sweep::fold;
+        begin_at(0, noise_variance, keep ? Sweep::keep : Sweep::fold);
     }
 
     /// Begins a measurement of parameter i alone, whose noise is chosen such that its variance becomes
@@ -103,7 +102,7 @@ class UdFactor {
         clear(row_);
         clear(gain_);
         row_[i] = 1;
-        begin_at(i / width, ceiling * (present / (present - ceiling)));
+        begin_at(i / width, ceiling * (present / (present - ceiling)), Sweep::fold);
         return true;
     }
 
@@ -278,10 +277,10 @@ class UdFactor {
         return self.panel(j / width)[i / rows * size + j % width * rows + i % rows];
     }
 
-    void begin_at(int panel, Scalar noise_variance) noexcept {
+    void begin_at(int panel, Scalar noise_variance, Sweep sweep) noexcept {
         alpha_ = noise_variance;
         panel_ = panel;
-        sweep_ = Sweep::fold;
+        sweep_ = sweep;
     }
 
     /// Computes f = U'h for the four columns of panel b, with a row h of p values.
