@@ -68,4 +68,32 @@ TEST_CASE("a device that holds its values in motion, but not at rest, is not ref
     CHECK(late > 50);
 }
 
+TEST_CASE("a frozen effort is found after the same time where values of it are lost") {
+    constexpr std::int64_t period = 2'000'000;
+    const auto found_at = [](int kept_of_three) {
+        FrozenEffortGate gate(100, period);
+        for (int tick = 0; tick < 2000; ++tick) {
+            gate.frozen(effort(tick), position(tick), tick * period);
+        }
+        int tick = 2000;
+        while (tick % 3 >= kept_of_three || !gate.frozen(9, position(tick), tick * period)) {
+            ++tick;
+        }
+        return tick;
+    };
+    CHECK(found_at(3) < 2100);
+    CHECK(found_at(2) <= found_at(3) + 2); // the next one that comes
+    CHECK(found_at(1) <= found_at(3) + 3);
+}
+
+TEST_CASE("an effort that returns from a silence with the same value is not frozen") {
+    constexpr std::int64_t period = 2'000'000;
+    FrozenEffortGate gate(100, period);
+    for (int tick = 0; tick < 2000; ++tick) {
+        gate.frozen(effort(tick), position(tick), tick * period);
+    }
+    gate.frozen(9, position(2000), 2000 * period);
+    CHECK_FALSE(gate.frozen(9, position(4000), 4000 * period));
+}
+
 } // namespace frozen_effort_test

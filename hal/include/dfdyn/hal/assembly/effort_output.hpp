@@ -46,7 +46,8 @@ class EffortOutput {
             reason = Reason::id_collision;
         }
         const bool known = later && value.effort_reason == Reason::ok; // whoever sent it
-        if (known && frozen_[joint].frozen(value.effort, position_rad) && reason == Reason::ok) {
+        if (known && frozen_[joint].frozen(value.effort, position_rad, value.stamp_ns) &&
+            reason == Reason::ok) {
             reason = Reason::output_frozen;
         }
         track_[joint].push(value.stamp_ns, reason, {value.effort}, false);
@@ -114,7 +115,7 @@ class EffortOutput {
     constexpr EffortOutput(const Config& config, std::index_sequence<i...> /*places*/) noexcept
         : joints_(config.joints), track_{Track<1, capacity>(config.track, {config.range[i]},
                                                             output_reasons)...},
-          frozen_{(static_cast<void>(i), FrozenEffortGate(config.frozen_limit))...},
+          frozen_{(static_cast<void>(i), FrozenEffortGate(config.frozen_limit, config.track.period_ns))...},
           rate_{(static_cast<void>(i), joint_rate(config.track))...}, rated_(config.track.period_ns > 0) {}
 
     [[nodiscard]] constexpr std::size_t used() const noexcept { return static_cast<std::size_t>(joints_); }

@@ -11,18 +11,23 @@ namespace dfdyn::hal {
 /// Detects an effort that repeats the same value while its joint moves; at rest a constant effort is no
 /// fault. The length of such runs in motion depends on the device's resolution. So the limit is twice the
 /// longest run of equal values that ended with a change of a few counts. Shorter runs may be coincidence.
-/// O(1).
+/// Runs are measured in periods: a value that was lost inside a run counts as one that came. O(1).
 class FrozenEffortGate {
   public:
-    /// `limit`: equal values in a row that are too many for any device, at least 2.
-    explicit constexpr FrozenEffortGate(int limit) noexcept : limit_(limit) {}
+    /// `limit`: equal values in a row that are too many for any device, at least 2. `period_ns`: of the
+    /// values; 0: not known, so that no value is known to be lost.
+    explicit constexpr FrozenEffortGate(int limit, std::int64_t period_ns = 0) noexcept
+        : limit_(limit), period_ns_(period_ns) {}
 
-    /// Whether this value is one too many. `position_rad`: the joint's last trusted position.
-    constexpr bool frozen(double effort, double position_rad) noexcept {
+    /// Whether this value is one too many. `position_rad`: the joint's last trusted position; `stamp_ns`: of
+    /// the value, later than the one before.
+    constexpr bool frozen(double effort, double position_rad, std::int64_t stamp_ns = 0) noexcept {
+        const int passed = periods_since(last_ns_, stamp_ns);
+        last_ns_ = stamp_ns;
         if (run_ == 0 || effort != last_) {
             end_run(effort, position_rad);
         }
-        run_ = std::min(run_ + 1, limit_);
+        run_ = std::min(run_ + (run_ == 0 ? 1 : passed), limit_);
         const bool moved = magnitude(position_rad - begin_rad_) > motion_of_a_run_rad;
         const bool now = frozen_ || (run_ >= limit() && moved);
         episodes_ += now && !frozen_ ? 1U : 0U;
@@ -36,7 +41,16 @@ class FrozenEffortGate {
   private:
     static constexpr double motion_of_a_run_rad = 5e-3;
     static constexpr double motion_of_a_value_rad = 2e-4;
-    static constexpr int enough = 40; ///< runs of the moving joint
+    static constexpr int enough = 40;   ///< runs of the moving joint
+    static constexpr int most_lost = 5; ///< values in a row; after more, equal ones may be coincidence
+
+    [[nodiscard]] constexpr int periods_since(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
+        if (period_ns_ <= 0) {
+            return 1;
+        }
+        const std::int64_t periods = (to_ns - from_ns + period_ns_ / 2) / period_ns_;
+        return static_cast<int>(std::clamp<std::int64_t>(periods, 1, most_lost + 1));
+    }
 
     constexpr void end_run(double effort, double position_rad) noexcept {
         const double change = magnitude(effort - last_);
@@ -62,7 +76,9 @@ class FrozenEffortGate {
     }
 
     int limit_;
-    int run_ = 0;
+    std::int64_t period_ns_;
+    std::int64_t last_ns_ = 0;
+    int run_ = 0; ///< periods from its first value
     int longest_ = 1;
     int learned_ = 0;
     int longest_at_any_speed_ = 1; ///< also of the joint at rest, whose effort changes less
