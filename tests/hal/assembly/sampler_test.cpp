@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -92,6 +93,17 @@ TEST_CASE("samples of moments are of their instants, and come at the period wher
           std::vector{start + 12 * ms, start + 14 * ms, start + 16 * ms, start + 18 * ms}); // after 6 ms
 }
 
+TEST_CASE("a moment from before a silence makes no sample after those of the silence") {
+    Bench bench(moments);
+    bench.frame(start, 0x80);
+    bench.frame(start + 2 * ms, 0x80);
+    bench.frames(start + 400 * ms, start + 402 * ms, ms); // which are no moments
+    bench.frame(start + 403 * ms, 0x80);                  // completes the instant of 2 ms
+    CHECK(std::is_sorted(bench.instants.begin(), bench.instants.end()));
+    bench.frame(start + 405 * ms, 0x80);
+    CHECK(bench.instants.back() == start + 403 * ms);
+}
+
 TEST_CASE("a sample with a missing value waits for it, and those after it wait too, in order") {
     Bench bench(timer);
     bench.arm.patience_ns = 20 * ms;
@@ -148,27 +160,40 @@ TEST_CASE("a frame whose stamp is ahead is left out if the next stamp does not c
     CHECK(bench.times == std::vector{start + 2 * ms, start + 4 * ms});
 }
 
-TEST_CASE("a frame whose stamp is ahead is taken if the next stamp continues from it") {
+TEST_CASE("up to three frames in a row whose stamps are ahead are left out") {
+    for (const int ahead : {2, 3}) {
+        CAPTURE(ahead);
+        Bench bench(timer);
+        bench.frames(start, start + 4 * ms, ms);
+        bench.frames(start + 40 * ms, start + (39 + ahead) * ms, ms);
+        bench.frames(start + 5 * ms, start + 8 * ms, ms);
+        CHECK(bench.sampler.strays() == static_cast<std::uint64_t>(ahead));
+        CHECK(bench.arm.taken_ns.size() == 9);
+        CHECK(bench.sampler.now_ns() == start + 8 * ms);
+    }
+}
+
+TEST_CASE("a frame whose stamp is ahead is taken if the next three stamps go on from it") {
     Bench bench(timer);
     bench.frames(start, start + 4 * ms, ms);
-    bench.frame(start + 700 * ms);
-    CHECK(bench.arm.taken_ns.size() == 5); // it waits
-    bench.frame(start + 701 * ms);
+    bench.frames(start + 700 * ms, start + 702 * ms, ms);
+    CHECK(bench.arm.taken_ns.size() == 5); // they wait
+    bench.frame(start + 703 * ms);
     CHECK(bench.sampler.strays() == 0);
-    CHECK(bench.arm.taken_ns.size() == 7);
+    CHECK(bench.arm.taken_ns.size() == 9);
     CHECK(bench.arm.taken_ns[5] == start + 700 * ms);
-    CHECK(bench.arm.updates == 7);
+    CHECK(bench.arm.updates == 9);
 }
 
 TEST_CASE("a long silence makes samples for a second, and none for the rest of it") {
     Bench bench(timer);
     bench.frames(start, start + 4 * ms, ms);
     bench.frame(start + 5000 * ms);
-    bench.frame(start + 5001 * ms);
+    bench.frames(start + 5001 * ms, start + 5003 * ms, ms);
     const auto count = bench.instants.size();
     CHECK(count >= 500);
     CHECK(count <= 504);
-    bench.frame(start + 5003 * ms);
+    bench.frame(start + 5005 * ms);
     CHECK(bench.times.back() > start + 5000 * ms); // from there on at the period again
     CHECK(bench.instants.size() - count == 1);
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace dfdyn::hal {
@@ -26,11 +27,12 @@ struct SamplerConfig {
 /// recording.
 ///
 /// A frame that does not show the clock (ClockWitness) goes through at the time of the one before.
-/// A frame whose stamp is ahead is held until the next: where time did not go on from it, it is left out.
+/// Frames whose stamps are ahead are held until three more go on from them. Where time returns before that,
+/// they are left out.
 /// A sample with a value that is missing waits for the next value, from which it is interpolated, or until it
 /// cannot come any more; those after it wait with it, at most `capacity` of them. Where no moment comes,
 /// samples are assembled at the period instead, and say why they are incomplete; for `longest_silence_ns` at
-/// most after the last frame.
+/// most after the last frame. A moment before the instant of such a sample makes none: it came too late.
 ///
 /// `Arm`: `take(frame, now)` returns the instant that can be assembled, if any; `update`, `pending` and
 /// `assemble` are those of SampleAssembly. `on_sample(assembled, now_ns)` gets every sample, in order of
@@ -54,16 +56,14 @@ class Sampler {
         if (!started_) {
             start(frame.stamp_ns);
         }
-        if (holds_ && !goes_on_from(held_.stamp_ns, frame.stamp_ns)) {
-            ++strays_;
-            holds_ = false;
+        if (holding_ > 0 && !goes_on_from(held_[holding_ - 1].frame.stamp_ns, frame.stamp_ns)) {
+            strays_ += holding_;
+            holding_ = 0;
+        } else if (holding_ == held_.size()) {
+            let_go(arm, on_sample);
         }
-        let_go(arm, on_sample);
-        if (clock_.leads(frame.stamp_ns)) {
-            holds_ = true;
-            held_ = frame;
-            held_state_ = state;
-            held_counters_ = counters;
+        if (holding_ > 0 || clock_.leads(frame.stamp_ns)) {
+            held_[holding_++] = {frame, state, counters};
         } else {
             put_through(arm, frame, state, counters, on_sample);
         }
@@ -98,6 +98,13 @@ class Sampler {
     [[nodiscard]] constexpr std::uint64_t strays() const noexcept { return strays_; }
 
   private:
+    /// A frame, and state and counters of the bus with it.
+    struct Held {
+        Frame frame;
+        BusState state = BusState::active;
+        BusCounters counters;
+    };
+
     [[nodiscard]] static constexpr std::size_t next(std::size_t place) noexcept {
         return (place + 1) % capacity;
     }
@@ -109,10 +116,10 @@ class Sampler {
 
     template <class OnSample>
     void let_go(Arm& arm, OnSample& on_sample) {
-        if (holds_) {
-            holds_ = false;
-            put_through(arm, held_, held_state_, held_counters_, on_sample);
+        for (std::size_t i = 0; i < holding_; ++i) {
+            put_through(arm, held_[i].frame, held_[i].state, held_[i].counters, on_sample);
         }
+        holding_ = 0;
     }
 
     template <class OnSample>
@@ -127,7 +134,9 @@ class Sampler {
         const std::optional<std::int64_t> moment = arm.take(frame, now_ns_);
         release(arm, now_ns_, on_sample);
         if (moment) {
-            wait(arm, *moment, now_ns_, on_sample);
+            if (*moment > newest_instant_ns_) {
+                wait(arm, *moment, now_ns_, on_sample);
+            }
             due_ns_ = now_ns_ + config_.patience_ns;
         }
     }
@@ -157,6 +166,7 @@ class Sampler {
     /// Assembles an instant now, or after those that wait.
     template <class OnSample>
     void wait(Arm& arm, std::int64_t instant_ns, std::int64_t now_ns, OnSample& on_sample) {
+        newest_instant_ns_ = std::max(newest_instant_ns_, instant_ns);
         if (waiting_ == 0 && !arm.pending(instant_ns, now_ns)) {
             on_sample(arm.assemble(instant_ns, now_ns), now_ns);
             return;
@@ -183,15 +193,14 @@ class Sampler {
     LogClock clock_;
     bool started_ = false;
     std::int64_t start_ns_ = 0;
-    std::int64_t now_ns_ = 0;                      ///< of the last frame, by that clock
-    std::int64_t due_ns_ = 0;                      ///< of the next sample that time alone calls for
+    std::int64_t now_ns_ = 0; ///< of the last frame, by that clock
+    std::int64_t due_ns_ = 0; ///< of the next sample that time alone calls for
+    std::int64_t newest_instant_ns_ = std::numeric_limits<std::int64_t>::min(); ///< of all samples
     std::array<std::int64_t, capacity> instant_{}; ///< of the samples that wait, a ring
     std::size_t first_ = 0;
     std::size_t waiting_ = 0;
-    bool holds_ = false; ///< a frame whose stamp is ahead, until the next frame
-    Frame held_;
-    BusState held_state_ = BusState::active;
-    BusCounters held_counters_;
+    std::array<Held, 3> held_{}; ///< frames whose stamps are ahead
+    std::size_t holding_ = 0;
     std::uint64_t strays_ = 0;
 };
 
