@@ -220,6 +220,42 @@ TEST_CASE("a torque command to a moteus has no stiffness and damping and asks fo
     CHECK(device.command(flexible(0x8004, bytes_of("010000"))) == MotorCommand::none);
 }
 
+TEST_CASE("a flipped bit in the header of a moteus' sub-frame makes no value of another register") {
+    constexpr double torque = 0.25;
+    std::array<JointValue, 1> values{};
+    values[0].position_rad = 1.5;
+    values[0].effort = torque;
+    MoteusController device({.id = 3, .joint = 0});
+    const Frame sound = device.encode(values).frame[0];
+    REQUIRE(device.decode(sound).joint[0].effort == Approx(torque));
+    for (const std::size_t byte : {0U, 1U, 3U, 4U, 17U, 18U}) {
+        for (unsigned bit = 0; bit < 8; ++bit) {
+            Frame flipped = sound;
+            flipped.data[byte] = static_cast<std::uint8_t>(flipped.data[byte] ^ (1U << bit));
+            const Decoded decoded = device.decode(flipped);
+            const bool valid = decoded.kind == Kind::values && decoded.joint[0].effort_reason == Reason::ok;
+            CAPTURE(byte, bit);
+            CHECK((!valid || decoded.joint[0].effort == Approx(torque)));
+        }
+    }
+}
+
+TEST_CASE("a moteus that is asked for other registers is understood from the third reply on") {
+    MoteusController device = controller();
+    const Frame before = reply("2d01000080be2d030000003f"); // position and torque as float
+    const Frame after = reply("2c0300000000003f");          // not this one's layout
+    REQUIRE(device.decode(before).kind == Kind::values);
+    const Frame other = reply("250110002503e803"); // as int16
+    CHECK(device.decode(other).kind == Kind::rejected);
+    CHECK(device.decode(before).kind == Kind::values);
+    CHECK(device.decode(other).kind == Kind::rejected);
+    const Decoded third = device.decode(other);
+    REQUIRE(third.kind == Kind::values);
+    CHECK(third.joint[0].effort == Approx(10));
+    CHECK(device.decode(after).kind != Kind::values);
+    CHECK(device.decode(before).kind == Kind::values);
+}
+
 TEST_CASE("a simulated moteus' reply is decoded to the resolution of a float") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_real_distribution<double> uniform(-3, 3);

@@ -98,6 +98,19 @@ TEST_CASE("an RMD motor's errors refuse its values until it reports none") {
     CHECK(old.decode(status_answer(0x145)).joint[0].effort_reason == Reason::device_fault);
 }
 
+TEST_CASE("an RMD motor's answer with errors that exclude each other is another answer") {
+    RmdMotor motor_v3 = motor();
+    const Frame angle = frame_of(0x245, {0x92, 0, 0, 0, 0x18, 0xFC, 0xFF, 0xFF}); // -10 degrees
+    Frame flipped = angle;
+    flipped.data[0] ^= 0x08U; // 0x9A
+    CHECK(motor_v3.decode(flipped).kind == Kind::rejected);
+    CHECK(motor_v3.decode(angle).joint[0].position_reason == Reason::ok);
+    RmdMotor old = motor(RmdDriver::v2);
+    CHECK(old.decode(frame_of(0x145, {0x9A, 0x18, 0xFC, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF})).kind ==
+          Kind::rejected);
+    CHECK(old.decode(status_answer(0x145)).joint[0].effort_reason == Reason::ok);
+}
+
 TEST_CASE("other answers of an RMD motor are no values") {
     for (unsigned command = 0; command < 256; ++command) {
         const bool value =

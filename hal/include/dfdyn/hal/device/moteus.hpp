@@ -63,10 +63,14 @@ class MoteusController {
         if (const Reason fault = read(frame, reply); fault != Reason::ok) {
             return rejected(fault);
         }
+        const bool has_values = reply.position || reply.torque || reply.velocity;
+        if (has_values && !layouts_.take(reply.layout)) {
+            return rejected(Reason::wrong_frame_type);
+        }
         const bool about_state = reply.mode || reply.fault;
         mode_ = reply.mode.value_or(mode_);
         fault_ = reply.fault.value_or(fault_);
-        if (reply.position || reply.torque || reply.velocity) {
+        if (has_values) {
             return values(frame, reply);
         }
         return about_state ? status(condition()) : Decoded{};
@@ -183,6 +187,7 @@ class MoteusController {
     struct Reply {
         std::optional<int> mode, fault;
         std::optional<Number> position, velocity, torque;
+        std::uint32_t layout = 1; ///< of all registers and their types
     };
 
     [[nodiscard]] constexpr std::uint32_t prefix_bits() const noexcept {
@@ -241,6 +246,8 @@ class MoteusController {
     }
 
     static constexpr void take(const MoteusSubframes::Item& item, Reply& reply) noexcept {
+        constexpr std::uint32_t factor = 16'777'619; // FNV
+        reply.layout = (reply.layout ^ (item.reg << 2U | static_cast<std::uint32_t>(item.type))) * factor;
         const double plain = item.type == 3 ? static_cast<double>(item.real) : item.integer;
         const int code = plain >= 0 && plain < 256 ? static_cast<int>(plain) : 255; // 255 for NaN
         switch (item.reg) {
@@ -310,6 +317,7 @@ class MoteusController {
     Config config_;
     int mode_ = position_mode; ///< as last reported; a device that is never asked is taken to operate
     int fault_ = 0;
+    MoteusLayouts layouts_;
 };
 
 static_assert(JointSource<MoteusController>);

@@ -5,10 +5,44 @@
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/frame.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 
 namespace dfdyn::hal {
+
+/// Knows in which layouts, registers and types, a device sends its values. A flipped bit in the header of a
+/// sub-frame makes another register of a value. So a layout counts from its third reply on, the first of all
+/// at once; not where eight other ones that do not count come in between. O(1).
+class MoteusLayouts {
+  public:
+    /// Accepts the layout of a reply, and returns whether it counts.
+    constexpr bool take(std::uint32_t layout) noexcept {
+        if (std::find(known_.begin(), known_.end(), layout) != known_.end()) {
+            return true;
+        }
+        constexpr std::ptrdiff_t replies_before = 2;
+        const bool counts = !any_ || std::count(doubtful_.begin(), doubtful_.end(), layout) >= replies_before;
+        any_ = true;
+        if (counts) {
+            known_[next_known_] = layout;
+            next_known_ = (next_known_ + 1) % known_.size();
+        } else {
+            doubtful_[next_doubtful_] = layout;
+            next_doubtful_ = (next_doubtful_ + 1) % doubtful_.size();
+        }
+        return counts;
+    }
+
+  private:
+    std::array<std::uint32_t, 4> known_{}; ///< 0: none
+    std::array<std::uint32_t, 8> doubtful_{};
+    std::size_t next_known_ = 0;
+    std::size_t next_doubtful_ = 0;
+    bool any_ = false;
+};
 
 /// Reads the sub-frames of a moteus frame from front to back. Layout: mjbots/moteus, docs/protocol/can.md
 /// (db1a762); little-endian:

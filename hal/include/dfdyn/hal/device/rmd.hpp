@@ -38,7 +38,8 @@ enum class RmdPosition : std::uint8_t {
 /// temperature.
 ///
 /// An angle of 1 ° is too coarse for learning; 0x92 or 0x60 is needed. Values carry `device_fault` from an
-/// answer 0x9A with errors until one without.
+/// answer 0x9A with errors until one without. Errors that exclude each other are those of another answer: of
+/// a negative angle, with a flipped bit in the command.
 class RmdMotor {
   public:
     static constexpr int joints = 1;
@@ -287,8 +288,13 @@ class RmdMotor {
     }
 
     constexpr Decoded decode_errors(const Frame& frame) noexcept {
-        faulty_ = config_.driver == RmdDriver::v2 ? frame.data[7] != 0
-                                                  : load_little<std::uint16_t>(frame.data.data() + 6) != 0;
+        constexpr unsigned both_voltages = 0x0C; // too low, and too high
+        const bool old = config_.driver == RmdDriver::v2;
+        const unsigned errors = old ? frame.data[7] : load_little<std::uint16_t>(frame.data.data() + 6);
+        if (old ? errors == 0xFF : (errors & both_voltages) == both_voltages) {
+            return rejected(Reason::wrong_frame_type);
+        }
+        faulty_ = errors != 0;
         return status(faulty_ ? Reason::device_fault : Reason::ok);
     }
 
