@@ -46,8 +46,8 @@ struct Watched {
 TEST_CASE("readings that were trusted for a short time only do not outweigh those before") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
-    REQUIRE(joint.trusted(400, 440, 0.3) > 0); // after a silence the joint can have gone there
-    CHECK(joint.trusted(440, 600) == 0);       // a jump back: 200 readings are needed
+    REQUIRE(joint.trusted(400, 440, 0.15) > 0); // after a silence the joint can have gone there
+    CHECK(joint.trusted(440, 600) == 0);        // a jump back: 200 readings are needed
     CHECK(joint.trusted(600, 700) > 50);
 }
 
@@ -178,6 +178,77 @@ TEST_CASE("the jump that is to be taken back is that of this loss, also where it
     REQUIRE(joint.trusted(340, 1570) > 1000);
     CHECK(joint.trusted(1570, 2180, 2.69) == 0); // beyond 3 rad after five readings
     CHECK(joint.trusted(2180, 2600) > 100);
+}
+
+TEST_CASE(
+    "a jump soon after a silence contradicts what came before it also where a reading is lost with it") {
+    Watched joint;
+    REQUIRE(joint.trusted(0, 300) == 291);
+    CHECK(joint.trusted(400, 403) == 0);
+    CHECK(joint.take(403, truth(403) + 0.14) != Reason::ok); // a replay begins
+    CHECK(joint.trusted(405, 590, 0.14) == 0);
+}
+
+TEST_CASE("no joint comes to the other side of its way and moves as slowly as before in so short a silence") {
+    Watched joint;
+    const auto slow = [](int tick) { return 0.1 + 2e-5 * tick; };
+    for (int tick = 0; tick < 300; ++tick) {
+        joint.take(tick, slow(tick));
+    }
+    // 0.2 s: 20 rad/s2 lead 0.4 rad away, but only 0.2 rad if the joint is slow again
+    int trusted = 0;
+    for (int tick = 400; tick < 900; ++tick) {
+        trusted += joint.take(tick, slow(tick) + 0.25) == Reason::ok ? 1 : 0;
+    }
+    CHECK(trusted == 0);
+}
+
+TEST_CASE("a slow joint that can be there after a silence is trusted") {
+    Watched joint;
+    const auto slow = [](int tick) { return 0.1 + 2e-5 * tick; };
+    int trusted = 0;
+    for (int tick = 0; tick < 900; ++tick) {
+        const bool silent = tick >= 300 && tick < 400;
+        trusted += !silent && joint.take(tick, slow(tick) + (tick < 300 ? 0 : 0.18)) == Reason::ok ? 1 : 0;
+    }
+    CHECK(trusted > 700);
+}
+
+TEST_CASE("readings of unknown time that began too far away lead to none that is trusted") {
+    const auto trusted_after = [](double off_rad) {
+        Watched joint;
+        REQUIRE(joint.trusted(0, 300) == 291);
+        for (int tick = 350; tick < 700; ++tick) { // 0.1 s later, at 5 rad/s at most
+            joint.gate.glance({.stamp_ns = tick * period,
+                               .position_rad = truth(tick) + off_rad,
+                               .step_rad = 1e-5,
+                               .from_zero_rad = truth(tick) + off_rad - zero_rad});
+        }
+        return joint.trusted(700, 1200, off_rad);
+    };
+    CHECK(trusted_after(-1) == 0);
+    CHECK(trusted_after(-0.05) > 400);
+}
+
+TEST_CASE("readings of unknown time that go on from the encoder's zero show that it has restarted") {
+    Watched joint;
+    for (int tick = 0; tick < 200; ++tick) {
+        joint.take(tick, 0.3 + 1e-4 * tick);
+    }
+    const auto counted = [&](int tick) { return zero_rad + 1.8e-3 * (tick - 300); };
+    joint.take(300, counted(300));
+    joint.take(301, counted(301));
+    for (int tick = 304; tick < 500; ++tick) { // late answers
+        joint.gate.glance({.stamp_ns = tick * period,
+                           .position_rad = counted(tick),
+                           .step_rad = 1e-5,
+                           .from_zero_rad = counted(tick) - zero_rad});
+    }
+    Reason last = Reason::ok;
+    for (int tick = 500; tick < 900; ++tick) {
+        last = joint.take(tick, counted(tick));
+    }
+    CHECK(last == Reason::position_lost);
 }
 
 } // namespace motion_recovery_test

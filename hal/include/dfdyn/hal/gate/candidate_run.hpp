@@ -29,14 +29,16 @@ class CandidateRun {
             other_.extend(reading, tolerance);
             return Step::is_off;
         }
+        const EncoderReading& first = other_goes_on ? other_.first() : reading; // of the run that begins
+        const bool follows = !run_.empty() && comparison.near(run_.last().stamp_ns, first.stamp_ns);
         const bool repeats = run_.first().position_rad == run_.last().position_rad; // shows nothing
-        const bool apart = recent && !repeats && !tolerance.reaches(run_.last(), reading);
+        const bool apart = follows && !repeats && !tolerance.reaches(run_.last(), first);
         contradicted_ = contradicted_ || (apart && run_.readings() + run_.zeros() >= min_run_readings);
         before_ = run_.empty() ? before_ : run_;
         run_ = other_goes_on ? other_ : MotionRun();
         other_ = {};
         run_.extend(reading, tolerance);
-        contradicted_ = contradicted_ || (recent && !repeats && jumps(comparison, tolerance));
+        contradicted_ = contradicted_ || (follows && !repeats && jumps(comparison, tolerance));
         return Step::begins;
     }
 

@@ -83,7 +83,8 @@ class MotionGate : private MotionEvidence {
         follow_away(reading);
         if (!expected && (returns || unfit_.is_far(unfit_.last_or(trusted_.last()), reading))) {
             counts_from_zero_ = !trusted_.empty() && !stood_at(reading) &&
-                                begins_at_zero(reading, trusted_.end_line(0, config_.period_ns));
+                                (zero_.lead_to_untimed(reading) ||
+                                 begins_at_zero(reading, trusted_.end_line(0, config_.period_ns)));
         }
         zero_lost_ = zero_lost_ || (counts_from_zero_ && !reading.zero);
         unfit_.take_untimed(reading);
@@ -96,8 +97,9 @@ class MotionGate : private MotionEvidence {
     constexpr void interrupt(const EncoderReading& reading) noexcept {
         restarts_ += !trusted_.empty() && !interrupted_ ? 1U : 0U;
         interrupted_ = true;
+        candidate_.contradict((!reading.zero && candidate_.disputes(reading, comparison_)) ||
+                              unfit_.contradict(reading));
         candidate_.interrupt();
-        candidate_.contradict(unfit_.contradict(reading));
         unfit_.take(reading);
         away_.hear(reading.stamp_ns);
         zero_.take(reading, is_expected(reading));
@@ -339,12 +341,9 @@ class MotionGate : private MotionEvidence {
                !reverses_jump(lost_jump_rad_);
     }
 
-    int lost_readings_ = 0;    ///< that continue the refused run
     double lost_jump_rad_ = 0; ///< with which they began; 0: with a silence
     std::uint8_t off_ = 0;     ///< which of the last eight readings led from no other, a bit each
-    std::uint64_t refusals_ = 0;
-    std::uint64_t restarts_ = 0;
-    std::uint64_t beyond_ = 0;
+    std::uint64_t refusals_ = 0, restarts_ = 0, beyond_ = 0;
 };
 
 } // namespace dfdyn::hal

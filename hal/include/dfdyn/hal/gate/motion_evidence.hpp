@@ -67,8 +67,8 @@ class MotionEvidence {
                    comparison_.reaches_after_silence(before, reading);
         };
         const auto untrusted_leads = [&](const MotionRun& before, std::int64_t longest_ns) {
-            return leads(before, longest_ns) &&
-                   !begins_at_zero(before.first(), before.begin_line(0, config_.period_ns));
+            const MotionLine begin = before.begin_line(0, config_.period_ns);
+            return leads(before, longest_ns) && begin.span_s > 0 && !begins_at_zero(before.first(), begin);
         };
         const std::int64_t short_ns = 3 * config_.max_age_ns;
         return leads(trusted_, short_ns) || untrusted_leads(refused_, short_ns) ||
@@ -94,8 +94,8 @@ class MotionEvidence {
         return trusted_.leads_to(reading, tolerance_, longest_s());
     }
 
-    /// Returns whether the readings jumped by no more than the velocity limit allows in one or two periods,
-    /// within a short silence at most: an impact, or a clock that was set by a few milliseconds.
+    /// Returns whether the readings jumped by no more than the velocity limit allows in two periods, within a
+    /// short silence at most: an impact, or a clock that was set by a few milliseconds.
     [[nodiscard]] constexpr bool jumped_little() const noexcept {
         const EncoderReading& from = trusted_.last();
         const EncoderReading& to = refused_.first();
@@ -103,8 +103,7 @@ class MotionEvidence {
         if (apart_ns <= 0) {
             return false;
         }
-        const std::int64_t period_ns = config_.period_ns > 0 ? config_.period_ns : apart_ns;
-        const double dt_s = seconds_between(0, std::clamp(apart_ns, period_ns, 2 * period_ns));
+        const double dt_s = 2 * seconds_between(0, config_.period_ns > 0 ? config_.period_ns : apart_ns);
         return !zero_lost_ && recently(from.stamp_ns, to.stamp_ns) &&
                magnitude(to.position_rad - from.position_rad) <= tolerance_.reach(dt_s, to.step_rad);
     }
@@ -112,7 +111,7 @@ class MotionEvidence {
     /// Returns whether the readings that are refused are those of an encoder that has lost its zero, not of a
     /// fault that passes: they began at the device's zero, or are very many.
     [[nodiscard]] constexpr bool has_lost_zero() const noexcept {
-        return zero_lost_ || refused_.readings() >= most_readings();
+        return zero_lost_ || lost_readings_ >= most_readings();
     }
 
     /// Returns true for two stamps of a short silence.
@@ -191,9 +190,18 @@ class MotionEvidence {
         return 50 * config_.qualification.readings;
     }
 
+    /// Returns true if a reading can be reached after the clock was set, in which time frames were left out.
+    [[nodiscard]] constexpr bool reaches_hidden(const EncoderReading& reading) const noexcept {
+        const std::int64_t since_ns = reading.stamp_ns - trusted_.last().stamp_ns;
+        return comparison_.comes_within(trusted_, reading,
+                                        std::max(0.0, seconds_between(0, since_ns)) + clock_s);
+    }
+
     /// Returns true if the run goes on from the trusted readings, and is not of a restarted encoder.
     [[nodiscard]] constexpr bool comes_from_trusted(const MotionRun& run, bool expected) const noexcept {
-        return (!time_known_ || connects(trusted_, run) || comes_from_established(run)) &&
+        const bool connected = time_known_ ? connects(trusted_, run) : reaches_hidden(run.first());
+        const bool from_afar = time_known_ && unfit_.lead_from_afar(trusted_.last(), run.first());
+        return ((connected && !from_afar) || comes_from_established(run)) &&
                (expected || !restarted_at_zero(run));
     }
 
@@ -272,8 +280,11 @@ class MotionEvidence {
         if (comparison_.near(before.last().stamp_ns + disturbed_ns, run.first().stamp_ns)) {
             return comparison_.meets(before, run, longest_s(), ShareAtZero{*this, run.first()});
         }
+        const double silence_s = seconds_between(before.last().stamp_ns, run.first().stamp_ns);
         return tolerance_.reaches(before.last(), run.first()) &&
-               comparison_.reaches_after_silence(before, run.first());
+               comparison_.reaches_after_silence(before, run.first()) &&
+               (silence_s <= clock_s ||
+                comparison_.can_follow(before, run)); // an impact, a clock that was set
     }
 
     /// Returns whether a run is still of the encoder whose readings are refused: a small jump, or a clock
@@ -331,6 +342,7 @@ class MotionEvidence {
     bool time_known_ = true;          ///< since the last trusted reading
     bool refused_time_known_ = true;  ///< since the last refused reading
     bool zero_lost_ = false;          ///< the refused readings began at the device's zero
+    int lost_readings_ = 0;           ///< of all refused runs since the joint was lost
     // NOLINTEND(*-non-private-member-variables-in-classes)
 };
 

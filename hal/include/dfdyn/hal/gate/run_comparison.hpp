@@ -41,6 +41,18 @@ class RunComparison {
         return reached;
     }
 
+    /// Returns true if the acceleration limit allows the motion of a run after a silence that follows another
+    /// run. From velocity v0 to v1 within T, a joint comes as far as (v0 + v1) T / 2, give or take a T² / 4.
+    [[nodiscard]] constexpr bool can_follow(const MotionRun& before, const MotionRun& run) const noexcept {
+        bool can = false;
+        for (const int skip : {0, 1}) {
+            const MotionLine from = before.end_line(skip, tolerance_.period_ns);
+            const MotionLine to = run.begin_line(skip, tolerance_.period_ns);
+            can = can || from.span_s <= 0 || to.span_s <= 0 || can_follow(from, to, run.first());
+        }
+        return can;
+    }
+
     /// Returns true if the motion of the run leads to this reading within the time `most_s`.
     [[nodiscard]] constexpr bool comes_within(const MotionRun& before, const EncoderReading& to,
                                               double most_s) const noexcept {
@@ -98,6 +110,21 @@ class RunComparison {
     }
 
   private:
+    /// Returns true if a joint can come from the end of one line to the begin of the other.
+    [[nodiscard]] constexpr bool can_follow(const MotionLine& from, const MotionLine& to,
+                                            const EncoderReading& first) const noexcept {
+        const double dt_s = seconds_between(from.end_ns, to.begin_ns);
+        const double half_acceleration = 0.5 * tolerance_.limits.acceleration;
+        const auto error = [&](const MotionLine& line) {
+            return line.error(dt_s, half_acceleration, first.step_rad, tolerance_.jitter_s);
+        };
+        const double fastest = std::max(magnitude(from.velocity), magnitude(to.velocity));
+        const double ends = 2 * first.step_rad + fastest * tolerance_.jitter_s;
+        const double before = to.at(from.end_ns) - from.end_rad;
+        const double after = to.at(to.begin_ns) - from.at(to.begin_ns);
+        return magnitude(before + after) <= error(from) + error(to) + 2 * ends;
+    }
+
     MotionTolerance tolerance_;
     std::int64_t max_age_ns_;
     std::int64_t jitter_ns_;

@@ -19,17 +19,21 @@ class UnfitReadings {
         : tolerance_(tolerance), max_age_ns_(max_age_ns), jitter_ns_(jitter_ns) {}
 
     /// Takes a reading of a device that was not itself.
-    constexpr void take(const EncoderReading& reading) noexcept { last_ = reading; }
+    constexpr void take(const EncoderReading& reading) noexcept {
+        first_ = first_ && leads_to_next(reading) ? first_ : reading;
+        last_ = reading;
+    }
 
     /// Takes a reading of unknown time.
     constexpr void take_untimed(const EncoderReading& reading) noexcept {
         moved_ = moved_ || (is_recent(reading, max_age_ns_ + 2 * jitter_ns_) &&
                             magnitude(reading.position_rad - last_->position_rad) > 2 * reading.step_rad);
-        last_ = reading;
+        take(reading);
     }
 
     /// Forgets them: the joint is trusted.
     constexpr void clear() noexcept {
+        first_.reset();
         last_.reset();
         moved_ = false;
     }
@@ -52,6 +56,15 @@ class UnfitReadings {
         return is_recent(reading, 3 * max_age_ns_) && !is_far(*last_, reading);
     }
 
+    /// Returns whether they lead to this reading, one to the next, from one to which the joint cannot have
+    /// moved.
+    [[nodiscard]] constexpr bool lead_from_afar(const EncoderReading& trusted,
+                                                const EncoderReading& reading) const noexcept {
+        return last_ && leads_to_next(reading) &&
+               magnitude(first_->position_rad - trusted.position_rad) >
+                   tolerance_.reach_untimed(first_->stamp_ns - trusted.stamp_ns, reading.step_rad);
+    }
+
     /// Returns whether a joint cannot move from one reading to the other, whose time is known to a period.
     [[nodiscard]] constexpr bool is_far(const EncoderReading& from, const EncoderReading& to) const noexcept {
         const std::int64_t since_ns = std::min(to.stamp_ns - from.stamp_ns, max_age_ns_);
@@ -60,6 +73,10 @@ class UnfitReadings {
     }
 
   private:
+    [[nodiscard]] constexpr bool leads_to_next(const EncoderReading& reading) const noexcept {
+        return is_recent(reading, max_age_ns_ + 2 * jitter_ns_) && !is_far(*last_, reading);
+    }
+
     [[nodiscard]] constexpr bool is_recent(const EncoderReading& reading,
                                            std::int64_t most_ns) const noexcept {
         return last_ && reading.stamp_ns - last_->stamp_ns <= most_ns;
@@ -68,6 +85,7 @@ class UnfitReadings {
     MotionTolerance tolerance_;
     std::int64_t max_age_ns_;
     std::int64_t jitter_ns_;
+    std::optional<EncoderReading> first_; ///< of those that lead to the last, one to the next
     std::optional<EncoderReading> last_;
     bool moved_ = false; ///< those of unknown time
 };

@@ -51,6 +51,16 @@ class ZeroWatch {
         return goes_on(first, begin, trusted_velocity);
     }
 
+    /// Returns true if the joint can have moved to this reading, whose time is known to a period, from
+    /// readings that began at the zero.
+    [[nodiscard]] constexpr bool lead_to_untimed(const EncoderReading& reading) const noexcept {
+        const std::int64_t since_ns = reading.stamp_ns - counted_.last().stamp_ns;
+        const double apart = magnitude(reading.from_zero_rad - counted_.last().from_zero_rad); // of any turn
+        return counted_.readings() > 0 && since_ns >= 0 &&
+               since_ns <= max_age_ns_ + 2 * tolerance_.period_ns &&
+               apart <= tolerance_.reach_untimed(since_ns, reading.step_rad);
+    }
+
     /// The readings that go on from one at the zero.
     [[nodiscard]] constexpr const MotionRun& counted() const noexcept { return counted_; }
 
