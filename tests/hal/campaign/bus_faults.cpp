@@ -202,9 +202,11 @@ void malform(FaultSite& site) {
             sent.frame.remote = true;
             break;
         case 2:
+            sent.other_form = true;
             sent.frame.fd = !sent.frame.fd;
             break;
         default:
+            sent.other_form = true;
             sent.frame.extended = !sent.frame.extended;
             sent.frame.id &= 0x7FFU;
             break;

@@ -42,8 +42,9 @@ struct FaultSite {
                    return count(part.position[joint]) > count(fields(sent).position[joint]);
                });
     }
+    /// Also in frames of another form: a frozen effort is so there, too.
     [[nodiscard]] bool has_effort(const Sent& sent, std::size_t joint) const {
-        return sent.role == Sent::Role::joints && any(fields(sent).effort[joint]);
+        return (sent.role == Sent::Role::joints || sent.other_form) && any(fields(sent).effort[joint]);
     }
     /// Whether it is of the board of this joint.
     [[nodiscard]] bool is_joint(const Sent& sent, std::size_t joint) const {

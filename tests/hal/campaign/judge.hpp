@@ -159,8 +159,9 @@ class Judge {
                                 double tolerance, Counts counts) const {
         const auto time_ns = static_cast<std::int64_t>(1e9 * claim.time_s);
         const auto unknown_ns = static_cast<std::int64_t>(1e9 * claim.unknown_s);
+        const std::int64_t late_ns = arm_.synchronous ? answer_ns : 0; // what is shown is of the SYNC before
         return sight_[joint].shows(what, claim.value, tolerance, time_ns - unknown_ns - bus_jitter,
-                                   time_ns + bus_jitter, counts);
+                                   time_ns + bus_jitter + late_ns, counts);
     }
 
     /// Whether an effort comes in frames with a position that is wrong or undecidable, as it is there.

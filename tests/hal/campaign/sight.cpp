@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/hal/campaign/sight.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dfdyn::tests {
@@ -40,6 +41,8 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
         }
         if (sent.corrupted) {
             blind_.push_back({time_ns, std::max<std::int64_t>(1, time_ns - last_.time_ns), span_ns()});
+            const wire::Joint& shown = sent.shown[joint]; // the bit may be another one
+            shown_.push_back({time_ns, shown.position_rad, shown.effort, false, runs_.size() - 1});
             continue;
         }
         examine(site, joint, sent, time_ns);
@@ -65,7 +68,7 @@ void JointSight::examine(const FaultSite& site, std::size_t joint, const Sent& s
     const double velocity = site.truth.velocity(joint, t);
     const double shown = sent.shown[joint].position_rad;
     const double error = shown - site.truth.position(joint, t);
-    const double late_s = site.arm.synchronous ? 0.6e-3 : seconds_of(bus_jitter);
+    const double late_s = seconds_of(site.arm.synchronous ? answer_ns : bus_jitter);
     const double from_zero = shown - site.arm.zero_rad[joint];
     const double step = site.arm.step_rad[joint];
     const Reading reading{.true_ns = sent.true_ns,
@@ -95,11 +98,12 @@ bool JointSight::can_move_to(const Reading& reading, double step_rad) const {
 
 void JointSight::begin_run(Run seen, const Reading& reading) {
     const double near_rad = jump_rad(seen.velocity);
-    const bool goes_on = wrong_.readings >= many && std::abs(reading.error_rad) > near_rad &&
-                         std::abs(reading.error_rad - wrong_rad_) <= near_rad;
-    if (goes_on) {
-        wrong_.begin_ns = seen.begin_ns;
-        runs_.push_back(wrong_);
+    const auto earlier = std::find_if(wrong_.rbegin(), wrong_.rend(), [&](const WrongRun& wrong) {
+        return std::abs(reading.error_rad - wrong.error_rad) <= near_rad;
+    });
+    if (earlier != wrong_.rend() && std::abs(reading.error_rad) > near_rad) {
+        runs_.push_back(earlier->run);
+        runs_.back().begin_ns = seen.begin_ns;
         return;
     }
     const Reading& before = last_established_;
@@ -122,16 +126,15 @@ void JointSight::take(Run seen, const Reading& reading) {
     Run& run = runs_.back();
     ++run.readings;
     last_ = reading;
-    if (std::abs(reading.error_rad) > near_rad && run.readings >= many) {
-        wrong_ = run;
-        wrong_rad_ = reading.error_rad;
+    if (std::abs(reading.error_rad) > near_rad && run.readings == many) {
+        wrong_.push_back({run, reading.error_rad});
     }
     const std::int64_t needed_ns = std::min(run.blind_ns, longest_trial_ns);
     right_ = reading.right ? right_ + 1 : 0;
     if (right_ >= 2 && reading.true_ns - run.begin_ns >= needed_ns) {
         last_established_ = reading;
         set_back_ = false;
-        wrong_ = {};
+        wrong_.clear();
     }
     const std::int64_t right_ns = last_established_.time_ns;
     blind_.push_back({reading.time_ns,

@@ -98,8 +98,11 @@ class JointSight {
     std::deque<std::int64_t> known_ns_; ///< times of the last right readings, since the clock was set
     int right_ = 0;                     ///< readings in a row
     bool set_back_ = false;             ///< the clock, since `last_established_`
-    Run wrong_{};                       ///< the last wrong run of many readings
-    double wrong_rad_ = 0;
+    struct WrongRun {
+        Run run;
+        double error_rad; ///< of its last reading
+    };
+    std::vector<WrongRun> wrong_; ///< of many readings, since `last_established_`
 };
 
 } // namespace dfdyn::tests

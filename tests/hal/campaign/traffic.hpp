@@ -17,6 +17,7 @@ constexpr std::int64_t bus_period = 2000 * bus_us;
 constexpr std::int64_t bus_jitter = 200 * bus_us; ///< of a frame behind its device's measurement
 constexpr std::int64_t bus_track_jitter = bus_jitter + 50 * bus_us; ///< as the description has it
 constexpr std::int64_t bus_max_age = 3 * bus_period;
+constexpr std::int64_t answer_ns = 600 * bus_us; ///< from a SYNC to the answers to it, at most
 constexpr std::int64_t timer_delay = 3 * bus_period / 2;
 
 /// What the robot's file says about the joints: twice what they do.
@@ -34,6 +35,7 @@ struct Sent {
     wire::Joints shown{};       ///< by a frame of joints
     std::int64_t clock_ns = 0;  ///< by which the clock of the stamps had been set
     bool corrupted = false;     ///< a bit of its data is flipped
+    bool other_form = false;    ///< a gateway has sent it as another kind of frame
     bool uninformative = false; ///< its position is an old one, or none yet: it says nothing of the joint
     bool other_sender = false;  ///< of a second sender: not of the joint's own encoder
 };
