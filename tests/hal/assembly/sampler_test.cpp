@@ -2,8 +2,10 @@
 #include "dfdyn/hal/assembly/sampler.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -52,9 +54,9 @@ struct Bench {
         frame.stamp_ns = stamp_ns;
         sampler.take(arm, frame, BusState::active, {}, recorder());
     }
-    void frames(std::int64_t from_ns, std::int64_t to_ns, std::int64_t step_ns) {
+    void frames(std::int64_t from_ns, std::int64_t to_ns, std::int64_t step_ns, std::uint32_t id = 0x100) {
         for (; from_ns <= to_ns; from_ns += step_ns) {
-            frame(from_ns);
+            frame(from_ns, id);
         }
     }
     auto recorder() {
@@ -100,8 +102,33 @@ TEST_CASE("a moment from before a silence makes no sample after those of the sil
     bench.frames(start + 400 * ms, start + 402 * ms, ms); // which are no moments
     bench.frame(start + 403 * ms, 0x80);                  // completes the instant of 2 ms
     CHECK(std::is_sorted(bench.instants.begin(), bench.instants.end()));
+    CHECK(bench.sampler.late_moments() == 1);
     bench.frame(start + 405 * ms, 0x80);
     CHECK(bench.instants.back() == start + 403 * ms);
+}
+
+TEST_CASE("moments that are further apart than the patience make their samples, in order of time") {
+    for (const std::int64_t apart_ns : {13 * ms / 2, 7 * ms, 8 * ms, 10 * ms, 100 * ms, 700 * ms}) {
+        CAPTURE(apart_ns);
+        Bench bench(moments);
+        bench.frames(start - 20 * ms, start - 2 * ms, 2 * ms, 0x80); // faster at first
+        std::vector<std::int64_t> missed;
+        constexpr int many = 1000;
+        for (int i = 0; i < many; ++i) {
+            bench.frame(start + i * apart_ns, 0x80);
+        }
+        bench.sampler.finish(bench.arm, bench.recorder());
+        for (int i = 0; i < many - 1; ++i) {
+            const std::int64_t instant_ns = start + i * apart_ns;
+            if (!std::binary_search(bench.instants.begin(), bench.instants.end(), instant_ns)) {
+                missed.push_back(i);
+            }
+        }
+        CHECK(missed.size() <= 1); // at the change of the period
+        CHECK(bench.sampler.late_moments() <= 1);
+        CHECK(std::adjacent_find(bench.instants.begin(), bench.instants.end(), std::greater_equal<>()) ==
+              bench.instants.end());
+    }
 }
 
 TEST_CASE("a sample with a missing value waits for it, and those after it wait too, in order") {
@@ -161,7 +188,7 @@ TEST_CASE("a frame whose stamp is ahead is left out if the next stamp does not c
 }
 
 TEST_CASE("up to three frames in a row whose stamps are ahead are left out") {
-    for (const int ahead : {2, 3}) {
+    for (int ahead = 1; ahead <= static_cast<int>(Sampler<ScriptedArm>::most_strays); ++ahead) {
         CAPTURE(ahead);
         Bench bench(timer);
         bench.frames(start, start + 4 * ms, ms);
@@ -183,6 +210,71 @@ TEST_CASE("a frame whose stamp is ahead is taken if the next three stamps go on 
     CHECK(bench.arm.taken_ns.size() == 9);
     CHECK(bench.arm.taken_ns[5] == start + 700 * ms);
     CHECK(bench.arm.updates == 9);
+}
+
+TEST_CASE("frames that come in bursts, or seldom, are all taken, the latter with the next one") {
+    for (const std::int64_t apart_ns : {6 * ms, 10 * ms, 90 * ms, 110 * ms, 300 * ms}) {
+        for (const int burst : {1, 2, 3, 4}) {
+            CAPTURE(apart_ns, burst);
+            Bench bench(timer);
+            for (int i = 0; i < 20; ++i) {
+                for (int k = 0; k < burst; ++k) {
+                    bench.frame(start + i * apart_ns + k * ms / 4);
+                }
+                CHECK(bench.arm.taken_ns.size() >= static_cast<std::size_t>(i * burst)); // all those before
+            }
+            bench.sampler.finish(bench.arm, bench.recorder());
+            CHECK(bench.sampler.strays() == 0);
+            CHECK(bench.arm.taken_ns.size() == static_cast<std::size_t>(20 * burst));
+        }
+    }
+}
+
+TEST_CASE("where time returns to between frames that are held, only those ahead of it are left out") {
+    Bench bench(timer);
+    bench.frames(start, start + 4 * ms, ms);
+    bench.frame(start + 20 * ms);
+    bench.frame(start + 25 * ms);
+    bench.frame(start + 30 * ms); // ahead of the next
+    bench.frame(start + 21 * ms);
+    CHECK(bench.sampler.strays() == 1);
+    CHECK(bench.arm.taken_ns.back() == start + 25 * ms); // overtaken by the one of that time
+}
+
+TEST_CASE("a bus that tells the time between frames makes the samples of its recording") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto draw = [&](std::int64_t from, std::int64_t to) {
+        return std::uniform_int_distribution<std::int64_t>(from, to)(engine);
+    };
+    std::uint64_t strays = 0;
+    for (int round = 0; round < 200; ++round) {
+        Bench live(timer);
+        Bench replayed(timer);
+        std::int64_t time_ns = start;
+        std::int64_t ahead_ns = 0;
+        std::int64_t left = 0; ///< strays in a row
+        for (int i = 0; i < 200; ++i) {
+            const std::int64_t step_ns = draw(0, 9) == 0 ? draw(6, 300) * ms : draw(50, 1000) * 1000;
+            if (--left <= 0) {
+                left = draw(1, Sampler<ScriptedArm>::most_strays);
+                ahead_ns = ahead_ns == 0 && i > 0 && draw(0, 3) == 0 ? draw(400, 700) * ms : 0;
+            }
+            if (i > 0) {
+                live.sampler.advance_to(live.arm, draw(time_ns, time_ns + step_ns - 1), live.recorder());
+            }
+            time_ns += step_ns;
+            live.frame(time_ns + ahead_ns);
+            replayed.frame(time_ns + ahead_ns);
+        }
+        live.sampler.finish(live.arm, live.recorder());
+        replayed.sampler.finish(replayed.arm, replayed.recorder());
+        REQUIRE(live.instants == replayed.instants);
+        REQUIRE(live.times == replayed.times);
+        REQUIRE(live.arm.taken_ns == replayed.arm.taken_ns);
+        REQUIRE(live.sampler.strays() == replayed.sampler.strays());
+        strays += live.sampler.strays();
+    }
+    CHECK(strays > 100);
 }
 
 TEST_CASE("a long silence makes samples for a second, and none for the rest of it") {

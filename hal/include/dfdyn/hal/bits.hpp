@@ -80,6 +80,15 @@ template <std::signed_integral T>
 
 [[nodiscard]] constexpr double magnitude(double value) noexcept { return value < 0 ? -value : value; }
 
+/// a - b modulo 2^64: time stamps are arbitrary and must not overflow.
+[[nodiscard]] constexpr std::int64_t wrapping_difference(std::int64_t a, std::int64_t b) noexcept {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+}
+/// a + b modulo 2^64.
+[[nodiscard]] constexpr std::int64_t wrapping_sum(std::int64_t a, std::int64_t b) noexcept {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+
 enum class ByteOrder : std::uint8_t {
     /// `@1` in a DBC: the start bit is the lowest bit, and the number continues at higher bits and bytes
     intel,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/bits.hpp"
+
 #include <algorithm>
 #include <cstdint>
 
@@ -30,10 +32,10 @@ class LogClock {
             started_ = true;
             latest_ns_ = stamp_ns;
         }
-        if (difference(latest_ns_, sum(stamp_ns, offset_ns_)) <= overtaken_ns) {
+        if (wrapping_difference(latest_ns_, wrapping_sum(stamp_ns, offset_ns_)) <= overtaken_ns) {
             run_ = 0;
         } else if (goes_on(stamp_ns)) {
-            offset_ns_ = difference(latest_ns_, run_begin_ns_);
+            offset_ns_ = wrapping_difference(latest_ns_, run_begin_ns_);
             run_ = 0;
             ++set_back_;
         }
@@ -44,12 +46,12 @@ class LogClock {
     /// Returns the time at which a frame with this time stamp would be due, without changing the clock.
     /// Requires at least one frame before.
     [[nodiscard]] constexpr std::int64_t time_of(std::int64_t stamp_ns) const noexcept {
-        return std::max(latest_ns_, sum(stamp_ns, offset_ns_));
+        return std::max(latest_ns_, wrapping_sum(stamp_ns, offset_ns_));
     }
 
     /// Returns true if the time stamp is so far ahead of the latest that it may be an outlier.
     [[nodiscard]] constexpr bool leads(std::int64_t stamp_ns) const noexcept {
-        return started_ && difference(sum(stamp_ns, offset_ns_), latest_ns_) > overtaken_ns;
+        return started_ && wrapping_difference(wrapping_sum(stamp_ns, offset_ns_), latest_ns_) > overtaken_ns;
     }
 
     /// Offset from the time stamps to this clock.
@@ -59,18 +61,10 @@ class LogClock {
     [[nodiscard]] constexpr std::uint64_t set_back() const noexcept { return set_back_; }
 
   private:
-    /// Sum modulo 2^64, because time stamps are arbitrary and must not overflow.
-    [[nodiscard]] static constexpr std::int64_t sum(std::int64_t a, std::int64_t b) noexcept {
-        return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
-    }
-    [[nodiscard]] static constexpr std::int64_t difference(std::int64_t a, std::int64_t b) noexcept {
-        return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
-    }
-
     /// Adds a time stamp that is behind the latest to the current run of such stamps. Returns true if the run
     /// is long enough.
     constexpr bool goes_on(std::int64_t stamp_ns) noexcept {
-        const std::int64_t step_ns = difference(stamp_ns, behind_ns_);
+        const std::int64_t step_ns = wrapping_difference(stamp_ns, behind_ns_);
         const bool next = run_ > 0 && step_ns >= -overtaken_ns && step_ns <= longest_step_ns;
         run_ = next ? run_ + 1 : 1;
         run_begin_ns_ = next ? run_begin_ns_ : stamp_ns;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/bits.hpp"
 #include "dfdyn/hal/bus.hpp"
 #include "dfdyn/hal/gate/clock_witness.hpp"
 #include "dfdyn/hal/log_clock.hpp"
@@ -9,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 namespace dfdyn::hal {
@@ -19,7 +19,7 @@ struct SamplerConfig {
     bool timer = true;            ///< at the period; else at the moments of the arm
     std::int64_t period_ns = 0;   ///< of the samples
     std::int64_t delay_ns = 0;    ///< of a timer's samples behind the time at which they are assembled
-    std::int64_t patience_ns = 0; ///< after the last moment; then the period calls for samples
+    std::int64_t patience_ns = 0; ///< after the last moment; then the period calls for samples; at least it
 };
 
 /// Makes the samples of a stream of frames when they are due. Time comes from the frames' stamps (LogClock),
@@ -27,12 +27,14 @@ struct SamplerConfig {
 /// recording.
 ///
 /// A frame that does not show the clock (ClockWitness) goes through at the time of the one before.
-/// Frames whose stamps are ahead are held until three more go on from them. Where time returns before that,
-/// they are left out.
+/// Up to `most_strays` frames whose stamps are ahead are held. Where time returns they are left out; they are
+/// taken where one more frame continues from them, or is further ahead.
 /// A sample with a value that is missing waits for the next value, from which it is interpolated, or until it
 /// cannot come any more; those after it wait with it, at most `capacity` of them. Where no moment comes,
 /// samples are assembled at the period instead, and say why they are incomplete; for `longest_silence_ns` at
-/// most after the last frame. A moment before the instant of such a sample makes none: it came too late.
+/// most after the last frame. Their instants follow that of the last moment, one period after another, so
+/// that moments that are further apart than the patience still come after them. A moment that does not is
+/// late: it makes no sample.
 ///
 /// `Arm`: `take(frame, now)` returns the instant that can be assembled, if any; `update`, `pending` and
 /// `assemble` are those of SampleAssembly. `on_sample(assembled, now_ns)` gets every sample, in order of
@@ -41,8 +43,10 @@ template <class Arm, std::size_t capacity = 16>
 class Sampler {
   public:
     static constexpr std::int64_t longest_silence_ns = 1'000'000'000;
+    static constexpr std::size_t most_strays = 3; ///< in a row
 
-    explicit constexpr Sampler(const SamplerConfig& config) noexcept : config_(config) {}
+    explicit constexpr Sampler(const SamplerConfig& config) noexcept
+        : config_(config), delay_ns_(config.delay_ns) {}
 
     /// The next frame; state and counters of its bus as they are with it.
     template <class OnSample>
@@ -56,12 +60,7 @@ class Sampler {
         if (!started_) {
             start(frame.stamp_ns);
         }
-        if (holding_ > 0 && !goes_on_from(held_[holding_ - 1].frame.stamp_ns, frame.stamp_ns)) {
-            strays_ += holding_;
-            holding_ = 0;
-        } else if (holding_ == held_.size()) {
-            let_go(arm, on_sample);
-        }
+        settle(arm, frame.stamp_ns, on_sample);
         if (holding_ > 0 || clock_.leads(frame.stamp_ns)) {
             held_[holding_++] = {frame, state, counters};
         } else {
@@ -73,7 +72,11 @@ class Sampler {
     /// then. Requires at least one frame.
     template <class OnSample>
     void advance_to(Arm& arm, std::int64_t stamp_ns, OnSample&& on_sample) {
-        let_go(arm, on_sample);
+        std::size_t past = 0;
+        while (past < holding_ && wrapping_difference(held_[past].frame.stamp_ns, stamp_ns) <= 0) {
+            ++past;
+        }
+        let_go(arm, past, on_sample);
         const std::int64_t end_ns = std::min(clock_.time_of(stamp_ns) + 1, now_ns_ + longest_silence_ns);
         assemble_before(arm, end_ns, on_sample);
         release(arm, end_ns, on_sample);
@@ -82,7 +85,7 @@ class Sampler {
     /// Declares the end of the frames. Waiting samples are assembled without the missing values.
     template <class OnSample>
     void finish(Arm& arm, OnSample&& on_sample) {
-        let_go(arm, on_sample);
+        let_go(arm, holding_, on_sample);
         for (; waiting_ > 0; --waiting_, first_ = next(first_)) {
             on_sample(arm.assemble(instant_[first_], now_ns_), now_ns_);
         }
@@ -97,6 +100,9 @@ class Sampler {
     /// Frames that were left out because their stamps were ahead of those after them.
     [[nodiscard]] constexpr std::uint64_t strays() const noexcept { return strays_; }
 
+    /// Moments that came too late for a sample.
+    [[nodiscard]] constexpr std::uint64_t late_moments() const noexcept { return late_moments_; }
+
   private:
     /// A frame, and state and counters of the bus with it.
     struct Held {
@@ -109,17 +115,33 @@ class Sampler {
         return (place + 1) % capacity;
     }
 
-    /// Whether the stamp of the next frame continues from a stamp.
-    [[nodiscard]] static constexpr bool goes_on_from(std::int64_t held_ns, std::int64_t next_ns) noexcept {
-        return next_ns >= held_ns - LogClock::overtaken_ns && next_ns <= held_ns + LogClock::longest_step_ns;
+    /// Decides by the stamp of the next frame which of the frames that are held are left out or taken.
+    template <class OnSample>
+    void settle(Arm& arm, std::int64_t stamp_ns, OnSample& on_sample) {
+        if (holding_ == 0) {
+            return;
+        }
+        const auto ahead_ns = [&] {
+            return wrapping_difference(held_[holding_ - 1].frame.stamp_ns, stamp_ns);
+        };
+        const bool returns = ahead_ns() > LogClock::overtaken_ns;
+        const bool further = ahead_ns() < -LogClock::overtaken_ns;
+        for (; holding_ > 0 && ahead_ns() > LogClock::overtaken_ns; --holding_) {
+            ++strays_;
+        }
+        if (returns || further || holding_ == most_strays) {
+            let_go(arm, holding_, on_sample);
+        }
     }
 
+    /// Takes the first of the frames that are held.
     template <class OnSample>
-    void let_go(Arm& arm, OnSample& on_sample) {
-        for (std::size_t i = 0; i < holding_; ++i) {
+    void let_go(Arm& arm, std::size_t count, OnSample& on_sample) {
+        for (std::size_t i = 0; i < count; ++i) {
             put_through(arm, held_[i].frame, held_[i].state, held_[i].counters, on_sample);
         }
-        holding_ = 0;
+        std::move(held_.begin() + count, held_.begin() + holding_, held_.begin());
+        holding_ -= count;
     }
 
     template <class OnSample>
@@ -134,11 +156,19 @@ class Sampler {
         const std::optional<std::int64_t> moment = arm.take(frame, now_ns_);
         release(arm, now_ns_, on_sample);
         if (moment) {
-            if (*moment > newest_instant_ns_) {
-                wait(arm, *moment, now_ns_, on_sample);
-            }
-            due_ns_ = now_ns_ + config_.patience_ns;
+            take_moment(arm, *moment, on_sample);
         }
+    }
+
+    template <class OnSample>
+    void take_moment(Arm& arm, std::int64_t moment_ns, OnSample& on_sample) {
+        if (newest_by_time_ && moment_ns <= *newest_by_time_ + config_.period_ns / 2) {
+            ++late_moments_;
+        } else {
+            wait(arm, moment_ns, now_ns_, on_sample);
+        }
+        due_ns_ = now_ns_ + config_.patience_ns;
+        delay_ns_ = due_ns_ - (moment_ns + config_.period_ns);
     }
 
     constexpr void start(std::int64_t stamp_ns) noexcept {
@@ -152,7 +182,11 @@ class Sampler {
     void assemble_before(Arm& arm, std::int64_t time_ns, OnSample& on_sample) {
         for (; due_ns_ < time_ns; due_ns_ += config_.period_ns) {
             release(arm, due_ns_, on_sample);
-            wait(arm, due_ns_ - config_.delay_ns, due_ns_, on_sample);
+            const std::int64_t instant_ns = due_ns_ - delay_ns_;
+            if (!newest_by_time_ || instant_ns > *newest_by_time_) { // a late moment has set the delay
+                newest_by_time_ = instant_ns;
+                wait(arm, instant_ns, due_ns_, on_sample);
+            }
         }
     }
 
@@ -166,7 +200,6 @@ class Sampler {
     /// Assembles an instant now, or after those that wait.
     template <class OnSample>
     void wait(Arm& arm, std::int64_t instant_ns, std::int64_t now_ns, OnSample& on_sample) {
-        newest_instant_ns_ = std::max(newest_instant_ns_, instant_ns);
         if (waiting_ == 0 && !arm.pending(instant_ns, now_ns)) {
             on_sample(arm.assemble(instant_ns, now_ns), now_ns);
             return;
@@ -193,15 +226,17 @@ class Sampler {
     LogClock clock_;
     bool started_ = false;
     std::int64_t start_ns_ = 0;
-    std::int64_t now_ns_ = 0; ///< of the last frame, by that clock
-    std::int64_t due_ns_ = 0; ///< of the next sample that time alone calls for
-    std::int64_t newest_instant_ns_ = std::numeric_limits<std::int64_t>::min(); ///< of all samples
+    std::int64_t now_ns_ = 0;                      ///< of the last frame, by that clock
+    std::int64_t due_ns_ = 0;                      ///< of the next sample that time alone calls for
+    std::int64_t delay_ns_ = 0;                    ///< of such a sample's instant
+    std::optional<std::int64_t> newest_by_time_;   ///< the last instant of such a sample
     std::array<std::int64_t, capacity> instant_{}; ///< of the samples that wait, a ring
     std::size_t first_ = 0;
     std::size_t waiting_ = 0;
-    std::array<Held, 3> held_{}; ///< frames whose stamps are ahead
+    std::array<Held, most_strays> held_{}; ///< frames whose stamps are ahead
     std::size_t holding_ = 0;
     std::uint64_t strays_ = 0;
+    std::uint64_t late_moments_ = 0;
 };
 
 } // namespace dfdyn::hal

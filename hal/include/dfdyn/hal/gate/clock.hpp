@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/bits.hpp"
+
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -23,10 +25,10 @@ class ClockGate {
 
     /// The stamp on the time base of `now_ns`, or nothing where it is not to be believed.
     constexpr std::optional<std::int64_t> accept(std::int64_t stamp_ns, std::int64_t now_ns) noexcept {
-        const std::int64_t shifted_ns = shifted(stamp_ns, offset_ns_);
-        const bool ahead = shifted_ns > shifted(now_ns, config_.tolerance_ns);
-        const std::int64_t earliest_ns =
-            started_ ? shifted(latest_ns_, -config_.tolerance_ns) : shifted(now_ns, -config_.max_step_ns);
+        const std::int64_t shifted_ns = wrapping_sum(stamp_ns, offset_ns_);
+        const bool ahead = shifted_ns > wrapping_sum(now_ns, config_.tolerance_ns);
+        const std::int64_t earliest_ns = started_ ? wrapping_sum(latest_ns_, -config_.tolerance_ns)
+                                                  : wrapping_sum(now_ns, -config_.max_step_ns);
         const bool behind = shifted_ns < earliest_ns;
         if (!ahead && !behind) {
             run_ = 0;
@@ -38,7 +40,7 @@ class ClockGate {
         }
         ++adopted_;
         run_ = 0;
-        offset_ns_ = difference(now_ns, stamp_ns);
+        offset_ns_ = wrapping_difference(now_ns, stamp_ns);
         latest_ns_ = now_ns;
         return follow(now_ns);
     }
@@ -51,15 +53,6 @@ class ClockGate {
     [[nodiscard]] constexpr std::uint64_t adopted() const noexcept { return adopted_; }
 
   private:
-    /// Sums of stamps wrap instead of overflowing, whatever a stamp is.
-    [[nodiscard]] static constexpr std::int64_t shifted(std::int64_t a, std::int64_t b) noexcept {
-        return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
-    }
-
-    [[nodiscard]] static constexpr std::int64_t difference(std::int64_t a, std::int64_t b) noexcept {
-        return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
-    }
-
     constexpr std::int64_t follow(std::int64_t stamp_ns) noexcept {
         latest_ns_ = started_ ? std::max(latest_ns_, stamp_ns) : stamp_ns;
         started_ = true;
@@ -68,7 +61,7 @@ class ClockGate {
 
     /// Whether this refused stamp ends a run that is long enough.
     constexpr bool consistent(std::int64_t stamp_ns) noexcept {
-        const std::int64_t step_ns = difference(stamp_ns, last_refused_ns_);
+        const std::int64_t step_ns = wrapping_difference(stamp_ns, last_refused_ns_);
         const bool goes_on = run_ > 0 && step_ns >= -config_.tolerance_ns && step_ns <= config_.max_step_ns;
         run_ = goes_on ? run_ + 1 : 1;
         last_refused_ns_ = stamp_ns;

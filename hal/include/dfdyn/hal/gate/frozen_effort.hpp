@@ -14,7 +14,7 @@ namespace dfdyn::hal {
 /// Runs are measured in periods: a value that was lost inside a run counts as one that came. O(1).
 class FrozenEffortGate {
   public:
-    /// `limit`: equal values in a row that are too many for any device, at least 2. `period_ns`: of the
+    /// `limit`: periods with the same value that are too many for any device, at least 2. `period_ns`: of the
     /// values; 0: not known, so that no value is known to be lost.
     explicit constexpr FrozenEffortGate(int limit, std::int64_t period_ns = 0) noexcept
         : limit_(limit), period_ns_(period_ns) {}
@@ -41,15 +41,20 @@ class FrozenEffortGate {
   private:
     static constexpr double motion_of_a_run_rad = 5e-3;
     static constexpr double motion_of_a_value_rad = 2e-4;
-    static constexpr int enough = 40;   ///< runs of the moving joint
-    static constexpr int most_lost = 5; ///< values in a row; after more, equal ones may be coincidence
+    static constexpr int enough = 40; ///< runs of the moving joint
+    static constexpr int slack = 6;   ///< periods, beyond twice the longest run
+    /// A silence counts as no more than this: a first value, a silence and an equal value are no frozen
+    /// effort even of a device that never repeated one, because 1 + 6 < 2 * 1 + 6.
+    static constexpr int longest_silence = slack;
 
     [[nodiscard]] constexpr int periods_since(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
         if (period_ns_ <= 0) {
             return 1;
         }
-        const std::int64_t periods = (to_ns - from_ns + period_ns_ / 2) / period_ns_;
-        return static_cast<int>(std::clamp<std::int64_t>(periods, 1, most_lost + 1));
+        const std::int64_t apart_ns = wrapping_difference(to_ns, from_ns);
+        const std::int64_t periods =
+            apart_ns / period_ns_ + (apart_ns % period_ns_ >= period_ns_ / 2 ? 1 : 0);
+        return static_cast<int>(std::clamp<std::int64_t>(periods, 1, longest_silence));
     }
 
     constexpr void end_run(double effort, double position_rad) noexcept {
@@ -72,7 +77,7 @@ class FrozenEffortGate {
 
     [[nodiscard]] constexpr int limit() const noexcept {
         const int longest = learned_ < enough ? longest_at_any_speed_ : longest_;
-        return learned_at_any_speed_ < enough ? limit_ : std::min(limit_, 2 * longest + 6);
+        return learned_at_any_speed_ < enough ? limit_ : std::min(limit_, 2 * longest + slack);
     }
 
     int limit_;
