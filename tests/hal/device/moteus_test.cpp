@@ -132,11 +132,18 @@ TEST_CASE("a moteus value without a number is no value") {
                     .has_velocity);
 }
 
+/// The third reply of its layout, which counts in any case.
+Decoded third_reply(MoteusController& device, const Frame& frame) {
+    device.decode(frame);
+    device.decode(frame);
+    return device.decode(frame);
+}
+
 TEST_CASE("a moteus value is valid in the modes that operate and without a fault") {
     for (unsigned mode = 0; mode < 256; ++mode) {
         MoteusController device = controller();
         device.decode(flexible(0x100, {0x21, 0x00, static_cast<std::uint8_t>(mode)}));
-        const Reason reason = device.decode(reply("2d010000003f")).joint[0].position_reason;
+        const Reason reason = third_reply(device, reply("2d010000003f")).joint[0].position_reason;
         const bool operates = (mode >= 5 && mode <= 10) || mode == 12 || mode == 13;
         const bool known = mode <= 15 && mode != 1;
         CAPTURE(mode);
@@ -147,7 +154,7 @@ TEST_CASE("a moteus value is valid in the modes that operate and without a fault
     for (unsigned fault = 0; fault < 128; ++fault) { // from 96 on, limits that are active
         MoteusController device = controller();
         device.decode(flexible(0x100, {0x21, 0x0F, static_cast<std::uint8_t>(fault)}));
-        const Reason reason = device.decode(reply("2d010000003f")).joint[0].position_reason;
+        const Reason reason = third_reply(device, reply("2d010000003f")).joint[0].position_reason;
         CAPTURE(fault);
         CHECK(reason == (fault > 0 && fault < 96 ? Reason::device_fault : Reason::ok));
     }
@@ -225,17 +232,22 @@ TEST_CASE("a flipped bit in the header of a moteus' sub-frame makes no value of 
     std::array<JointValue, 1> values{};
     values[0].position_rad = 1.5;
     values[0].effort = torque;
-    MoteusController device({.id = 3, .joint = 0});
-    const Frame sound = device.encode(values).frame[0];
-    REQUIRE(device.decode(sound).joint[0].effort == Approx(torque));
+    const Frame sound = MoteusController({.id = 3, .joint = 0}).encode(values).frame[0];
     for (const std::size_t byte : {0U, 1U, 3U, 4U, 17U, 18U}) {
         for (unsigned bit = 0; bit < 8; ++bit) {
+            CAPTURE(byte, bit);
+            MoteusController device({.id = 3, .joint = 0});
+            REQUIRE(device.decode(sound).joint[0].effort == Approx(torque));
             Frame flipped = sound;
             flipped.data[byte] = static_cast<std::uint8_t>(flipped.data[byte] ^ (1U << bit));
             const Decoded decoded = device.decode(flipped);
-            const bool valid = decoded.kind == Kind::values && decoded.joint[0].effort_reason == Reason::ok;
-            CAPTURE(byte, bit);
-            CHECK((!valid || decoded.joint[0].effort == Approx(torque)));
+            const JointValue& value = decoded.joint[0];
+            const bool values_come = decoded.kind == Kind::values;
+            const bool effort = values_come && value.effort_reason == Reason::ok;
+            const bool position = values_come && value.position_reason == Reason::ok;
+            CHECK((!effort || value.effort == Approx(torque)));
+            CHECK((!position || value.position_rad == Approx(1.5)));
+            CHECK(device.decode(sound).joint[0].position_reason == Reason::ok);
         }
     }
 }
@@ -254,6 +266,52 @@ TEST_CASE("a moteus that is asked for other registers is understood from the thi
     CHECK(third.joint[0].effort == Approx(10));
     CHECK(device.decode(after).kind != Kind::values);
     CHECK(device.decode(before).kind == Kind::values);
+}
+
+/// A reply with position and torque as float, and one more register as int8.
+Frame polled(unsigned reg) {
+    Bytes bytes = bytes_of("2d01000080be2d030000003f20010000");
+    bytes[13] = 0x01; // one register
+    bytes[14] = static_cast<std::uint8_t>(reg);
+    return flexible(0x100, bytes);
+}
+
+TEST_CASE("a moteus of which one more register is polled in turn loses nothing after the first rounds") {
+    const std::array<unsigned, 12> other{0x04, 0x05, 0x06, 0x07, 0x0A, 0x0D,
+                                         0x0E, 0x10, 0x20, 0x21, 0x22, 0x30};
+    const std::array<unsigned, 12> state{0x00, 0x02, 0x0E, 0x0F, 0x04, 0x05,
+                                         0x06, 0x07, 0x0A, 0x0D, 0x10, 0x20};
+    for (const auto& registers : {other, state}) {
+        MoteusController device = controller();
+        for (int round = 0; round < 100; ++round) {
+            for (const unsigned reg : registers) {
+                CAPTURE(round, reg);
+                const bool values = device.decode(polled(reg)).kind == Kind::values;
+                CHECK((values || (round < 2 && registers == state)));
+            }
+        }
+    }
+}
+
+TEST_CASE("eight layouts of a moteus' values, in turn, all count after two rounds") {
+    const std::array<const char*, 8> layouts{"2d01000080be", "2d030000003f",      "25010010",
+                                             "25030010",     "250100102503e803",  "2901001000002503e803",
+                                             "2101102103e8", "2d01000080be2103e8"};
+    MoteusController device = controller();
+    for (int round = 0; round < 50; ++round) {
+        for (const char* const hex : layouts) {
+            CAPTURE(round, hex);
+            CHECK((device.decode(reply(hex)).kind != Kind::rejected || round < 2));
+        }
+    }
+}
+
+TEST_CASE("a flipped bit makes no fault of a moteus' temperature") {
+    MoteusController device = controller();
+    REQUIRE(device.decode(reply("2d01000080be")).joint[0].position_reason == Reason::ok);
+    device.decode(reply("210e2850"));                               // 40 degrees
+    CHECK(device.decode(reply("210f2850")).kind == Kind::rejected); // as the number of a fault
+    CHECK(device.decode(reply("2d01000080be")).joint[0].position_reason == Reason::ok);
 }
 
 TEST_CASE("a simulated moteus' reply is decoded to the resolution of a float") {

@@ -84,14 +84,18 @@ TEST_CASE("a V2 driver of an RMD motor answers on the identifier of the requests
     CHECK(turns.position_rad == Approx(-360 * degree).epsilon(1e-13));
 }
 
-TEST_CASE("an RMD motor's errors refuse its values until it reports none") {
+TEST_CASE("an RMD motor's errors refuse its values until it reports none twice") {
     RmdMotor faulty = motor();
     CHECK(faulty.decode(frame_of(0x245, {0x9A, 0x32, 0, 1, 0xE5, 0x01, 0x02, 0x00})).reason ==
           Reason::device_fault); // 0x0002: stall
     CHECK(faulty.decode(status_answer()).joint[0].effort_reason == Reason::device_fault);
     CHECK(faulty.decode(frame_of(0x245, {0x92, 0, 0, 0, 1, 0, 0, 0})).joint[0].position_reason ==
           Reason::device_fault);
-    CHECK(faulty.decode(frame_of(0x245, {0x9A, 0x32, 0, 1, 0xE5, 0x01, 0x00, 0x00})).reason == Reason::ok);
+    const Frame none = frame_of(0x245, {0x9A, 0x32, 0, 1, 0xE5, 0x01, 0x00, 0x00});
+    const Frame flipped = frame_of(0x245, {0x92 ^ 0x08, 0, 0, 0, 1, 0, 0, 0}); // a small angle
+    CHECK(faulty.decode(flipped).reason == Reason::device_fault);
+    CHECK(faulty.decode(status_answer()).joint[0].effort_reason == Reason::device_fault);
+    CHECK(faulty.decode(none).reason == Reason::ok); // two agree
     CHECK(faulty.decode(status_answer()).joint[0].effort_reason == Reason::ok);
     RmdMotor old = motor(RmdDriver::v2);
     old.decode(frame_of(0x145, {0x9A, 0x32, 0, 0xE5, 0x01, 0, 0, 0x08}));

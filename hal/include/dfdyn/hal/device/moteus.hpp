@@ -20,8 +20,9 @@ namespace dfdyn::hal {
 /// - 1 position: 1e-2, 1e-4, 1e-5 turns of the output; 2 velocity: 0.1, 2.5e-4, 1e-5 turns/s
 /// - 3 torque: 0.5, 0.01, 0.001 N·m; 15 fault: 1 … 95 is a fault, 96 and above a limit that is active
 ///
-/// A device only answers, and a reply contains what was asked, in any order and type. The most negative
-/// integer, or a float that is not a number, means "no value": `position_out_of_range`,
+/// A device only answers, and a reply contains what was asked, in any order and type. The registers above, in
+/// another order or in other types than before, are believed from their third reply on (MoteusLayouts). The
+/// most negative integer, or a float that is not a number, means "no value": `position_out_of_range`,
 /// `output_out_of_range`. Mode and fault hold until the next reply about them. Values carry
 /// `device_not_operational` while the device does not operate, `device_fault` in mode 1, with a fault, and in
 /// modes that no document lists.
@@ -64,10 +65,10 @@ class MoteusController {
             return rejected(fault);
         }
         const bool has_values = reply.position || reply.torque || reply.velocity;
-        if (has_values && !layouts_.take(reply.layout)) {
+        const bool about_state = reply.mode || reply.fault;
+        if ((has_values || about_state) && !layouts_.take(reply.layout)) {
             return rejected(Reason::wrong_frame_type);
         }
-        const bool about_state = reply.mode || reply.fault;
         mode_ = reply.mode.value_or(mode_);
         fault_ = reply.fault.value_or(fault_);
         if (has_values) {
@@ -187,7 +188,7 @@ class MoteusController {
     struct Reply {
         std::optional<int> mode, fault;
         std::optional<Number> position, velocity, torque;
-        std::uint32_t layout = 1; ///< of all registers and their types
+        std::uint32_t layout = 1; ///< of the registers that are read, and their types
     };
 
     [[nodiscard]] constexpr std::uint32_t prefix_bits() const noexcept {
@@ -246,8 +247,10 @@ class MoteusController {
     }
 
     static constexpr void take(const MoteusSubframes::Item& item, Reply& reply) noexcept {
-        constexpr std::uint32_t factor = 16'777'619; // FNV
-        reply.layout = (reply.layout ^ (item.reg << 2U | static_cast<std::uint32_t>(item.type))) * factor;
+        if (item.reg <= 0x3 || item.reg == 0xF) {
+            constexpr std::uint32_t factor = 16'777'619; // FNV
+            reply.layout = (reply.layout ^ (item.reg << 2U | static_cast<std::uint32_t>(item.type))) * factor;
+        }
         const double plain = item.type == 3 ? static_cast<double>(item.real) : item.integer;
         const int code = plain >= 0 && plain < 256 ? static_cast<int>(plain) : 255; // 255 for NaN
         switch (item.reg) {

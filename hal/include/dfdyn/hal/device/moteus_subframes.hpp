@@ -13,9 +13,10 @@
 
 namespace dfdyn::hal {
 
-/// Knows in which layouts, registers and types, a device sends its values. A flipped bit in the header of a
-/// sub-frame makes another register of a value. So a layout counts from its third reply on, the first of all
-/// at once; not where eight other ones that do not count come in between. O(1).
+/// Knows in which layouts a device replies: which of the registers 0 to 3 and 15, in which order and types.
+/// Others may change from reply to reply. A flipped bit in the header of a sub-frame makes another register
+/// of a value. So a layout counts from its third reply on, the first of all at once. Up to eight layouts
+/// count whatever their order. O(1).
 class MoteusLayouts {
   public:
     /// Accepts the layout of a reply, and returns whether it counts.
@@ -27,6 +28,7 @@ class MoteusLayouts {
         const bool counts = !any_ || std::count(doubtful_.begin(), doubtful_.end(), layout) >= replies_before;
         any_ = true;
         if (counts) {
+            std::replace(doubtful_.begin(), doubtful_.end(), layout, none);
             known_[next_known_] = layout;
             next_known_ = (next_known_ + 1) % known_.size();
         } else {
@@ -37,8 +39,9 @@ class MoteusLayouts {
     }
 
   private:
-    std::array<std::uint32_t, 4> known_{}; ///< 0: none
-    std::array<std::uint32_t, 8> doubtful_{};
+    static constexpr std::uint32_t none = 0;
+    std::array<std::uint32_t, 8> known_{};
+    std::array<std::uint32_t, 16> doubtful_{}; ///< two replies of each, where eight are sent in turn
     std::size_t next_known_ = 0;
     std::size_t next_doubtful_ = 0;
     bool any_ = false;

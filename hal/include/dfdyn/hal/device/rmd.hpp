@@ -38,8 +38,8 @@ enum class RmdPosition : std::uint8_t {
 /// temperature.
 ///
 /// An angle of 1 ° is too coarse for learning; 0x92 or 0x60 is needed. Values carry `device_fault` from an
-/// answer 0x9A with errors until one without. Errors that exclude each other are those of another answer: of
-/// a negative angle, with a flipped bit in the command.
+/// answer 0x9A with errors until two in a row without: a flipped bit makes 0x9A of 0x92, the answer with the
+/// angle. A negative angle then reads as errors that exclude each other, and is rejected.
 class RmdMotor {
   public:
     static constexpr int joints = 1;
@@ -294,12 +294,14 @@ class RmdMotor {
         if (old ? errors == 0xFF : (errors & both_voltages) == both_voltages) {
             return rejected(Reason::wrong_frame_type);
         }
-        faulty_ = errors != 0;
+        faulty_ = errors != 0 || (faulty_ && !cleared_once_);
+        cleared_once_ = errors == 0;
         return status(faulty_ ? Reason::device_fault : Reason::ok);
     }
 
     Config config_;
     bool faulty_ = false;
+    bool cleared_once_ = false; ///< the last answer 0x9A has no errors
 };
 
 static_assert(JointSource<RmdMotor>);
