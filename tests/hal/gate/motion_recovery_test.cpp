@@ -25,12 +25,14 @@ struct Watched {
                      .jitter_ns = period / 10,
                      .qualification = {.readings = 10, .zero_readings = 1000}}};
 
-    Reason take(int tick, double position_rad) {
-        const EncoderReading reading{.stamp_ns = tick * period,
-                                     .position_rad = position_rad,
-                                     .step_rad = 1e-5,
-                                     .from_zero_rad = position_rad - zero_rad};
-        return gate.take(reading).reason;
+    Reason take(int tick, double position_rad) { return gate.take(reading(tick, position_rad)).reason; }
+
+    static EncoderReading reading(int tick, double position_rad, bool zero = false) {
+        return {.stamp_ns = tick * period,
+                .position_rad = position_rad,
+                .step_rad = 1e-5,
+                .from_zero_rad = position_rad - zero_rad,
+                .zero = zero};
     }
 
     /// Gives the readings of ticks [from, to), this far from the truth; returns how many were trusted.
@@ -219,15 +221,53 @@ TEST_CASE("readings of unknown time that began too far away lead to none that is
         Watched joint;
         REQUIRE(joint.trusted(0, 300) == 291);
         for (int tick = 350; tick < 700; ++tick) { // 0.1 s later, at 5 rad/s at most
-            joint.gate.glance({.stamp_ns = tick * period,
-                               .position_rad = truth(tick) + off_rad,
-                               .step_rad = 1e-5,
-                               .from_zero_rad = truth(tick) + off_rad - zero_rad});
+            joint.gate.glance(Watched::reading(tick, truth(tick) + off_rad));
         }
         return joint.trusted(700, 1200, off_rad);
     };
     CHECK(trusted_after(-1) == 0);
     CHECK(trusted_after(-0.05) > 400);
+}
+
+/// How many of the last 1000 of 2000 true readings are trusted.
+int trusted_later(Watched& joint, int from) {
+    joint.trusted(from, from + 1000);
+    return joint.trusted(from + 1000, from + 2000);
+}
+
+TEST_CASE("zeros of a device that is not ready, and then its readings, do not lose the joint") {
+    for (const bool untimed : {false, true}) {
+        CAPTURE(untimed);
+        Watched joint;
+        REQUIRE(joint.trusted(0, 300) == 291);
+        for (int tick = 300; tick < 384; ++tick) {
+            joint.gate.interrupt(Watched::reading(tick, zero_rad, true));
+        }
+        for (int tick = 384; tick < 417; ++tick) {
+            const EncoderReading good = Watched::reading(tick, truth(tick));
+            untimed ? joint.gate.glance(good) : joint.gate.interrupt(good);
+        }
+        CHECK(trusted_later(joint, 417) == 1000);
+    }
+}
+
+TEST_CASE("one reading that is off among those of unknown time, or of a device that is not ready, loses no "
+          "joint") {
+    for (const bool untimed : {false, true}) {
+        for (const int off : {300, 301, 302, 340, 374}) {
+            for (const double off_rad : {0.026, -0.026, 0.3, 1.0}) {
+                CAPTURE(untimed, off, off_rad);
+                Watched joint;
+                REQUIRE(joint.trusted(0, 300) == 291);
+                for (int tick = 300; tick < 375; ++tick) {
+                    const EncoderReading one =
+                        Watched::reading(tick, truth(tick) + (tick == off ? off_rad : 0));
+                    untimed ? joint.gate.glance(one) : joint.gate.interrupt(one);
+                }
+                CHECK(trusted_later(joint, 375) == 1000);
+            }
+        }
+    }
 }
 
 TEST_CASE("readings of unknown time that go on from the encoder's zero show that it has restarted") {
@@ -239,10 +279,7 @@ TEST_CASE("readings of unknown time that go on from the encoder's zero show that
     joint.take(300, counted(300));
     joint.take(301, counted(301));
     for (int tick = 304; tick < 500; ++tick) { // late answers
-        joint.gate.glance({.stamp_ns = tick * period,
-                           .position_rad = counted(tick),
-                           .step_rad = 1e-5,
-                           .from_zero_rad = counted(tick) - zero_rad});
+        joint.gate.glance(Watched::reading(tick, counted(tick)));
     }
     Reason last = Reason::ok;
     for (int tick = 500; tick < 900; ++tick) {

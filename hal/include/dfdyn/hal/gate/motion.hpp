@@ -28,8 +28,9 @@ namespace dfdyn::hal {
 /// - Another run that does not connect is refused for as long as its readings lead from one to the next. A
 ///   jump or a silence that leads to where the joint can be ends it, after twenty times as many readings. So
 ///   do twenty times as many readings themselves where the jump was as small as the velocity limit allows in
-///   a period or two. After fifty times as many readings the limits allow any position: then only a jump ends
-///   it that takes back the first one, or the program's restart.
+///   two periods, or between two readings where the period is not known. After fifty times as many readings
+///   the limits allow any position: then only a jump ends it that takes back the first one, or the program's
+///   restart.
 /// - A position that has been trusted again for a shorter time than the silence or the jump before it lasted
 ///   (at most 0.4 s) may be the wrong one. A run is as good that connects with what was trusted before and
 ///   begins with a jump that takes back most of the way from there.
@@ -93,7 +94,7 @@ class MotionGate : private MotionEvidence {
     /// The readings contradict each other: more of them are needed.
     constexpr void contradict() noexcept { candidate_.contradict(true); }
 
-    /// The device was not itself when it sent this reading: it must qualify again.
+    /// The device was not ready when it sent this reading: it must qualify again.
     constexpr void interrupt(const EncoderReading& reading) noexcept {
         restarts_ += !trusted_.empty() && !interrupted_ ? 1U : 0U;
         interrupted_ = true;
@@ -136,7 +137,7 @@ class MotionGate : private MotionEvidence {
 
     /// Number of readings that were refused.
     [[nodiscard]] constexpr std::uint64_t refusals() const noexcept { return refusals_; }
-    /// How often the device was not itself after it had been trusted.
+    /// How often the device was not ready after it had been trusted.
     [[nodiscard]] constexpr std::uint64_t restarts() const noexcept { return restarts_; }
     /// Number of readings beyond the joint's range.
     [[nodiscard]] constexpr std::uint64_t beyond() const noexcept { return beyond_; }
@@ -305,7 +306,7 @@ class MotionGate : private MotionEvidence {
         return settled(reading);
     }
 
-    /// Refuses the run that ends with this reading, and what goes on from it.
+    /// Refuses the run that ends with this reading, and what continues it.
     constexpr Verdict lose(const EncoderReading& reading) noexcept {
         const bool new_here = !lost() || !connects(refused_, run());
         const bool at_zero = begins_at_zero(run().first(), run().begin_line(0, config_.period_ns)) &&

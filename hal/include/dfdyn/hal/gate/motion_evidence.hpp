@@ -94,8 +94,9 @@ class MotionEvidence {
         return trusted_.leads_to(reading, tolerance_, longest_s());
     }
 
-    /// Returns whether the readings jumped by no more than the velocity limit allows in two periods, within a
-    /// short silence at most: an impact, or a clock that was set by a few milliseconds.
+    /// Returns whether the readings jumped by no more than the velocity limit allows in two periods (where
+    /// the period is not known: in the time between them), within a short silence at most: an impact, or a
+    /// clock that was set by a few milliseconds.
     [[nodiscard]] constexpr bool jumped_little() const noexcept {
         const EncoderReading& from = trusted_.last();
         const EncoderReading& to = refused_.first();
@@ -103,7 +104,7 @@ class MotionEvidence {
         if (apart_ns <= 0) {
             return false;
         }
-        const double dt_s = 2 * seconds_between(0, config_.period_ns > 0 ? config_.period_ns : apart_ns);
+        const double dt_s = seconds_between(0, config_.period_ns > 0 ? 2 * config_.period_ns : apart_ns);
         return !zero_lost_ && recently(from.stamp_ns, to.stamp_ns) &&
                magnitude(to.position_rad - from.position_rad) <= tolerance_.reach(dt_s, to.step_rad);
     }
@@ -338,7 +339,7 @@ class MotionEvidence {
     bool expected_ = false;           ///< a run that was seen shortly before led to the begin of the run
     bool suspected_ = false;          ///< the run may be of a frozen encoder
     bool disturbed_ = false;          ///< a jump has come since the last trusted reading
-    bool interrupted_ = false;        ///< the device was not itself since the last trusted reading
+    bool interrupted_ = false;        ///< the device was not ready since the last trusted reading
     bool time_known_ = true;          ///< since the last trusted reading
     bool refused_time_known_ = true;  ///< since the last refused reading
     bool zero_lost_ = false;          ///< the refused readings began at the device's zero

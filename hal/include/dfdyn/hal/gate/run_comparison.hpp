@@ -42,7 +42,8 @@ class RunComparison {
     }
 
     /// Returns true if the acceleration limit allows the motion of a run after a silence that follows another
-    /// run. From velocity v0 to v1 within T, a joint comes as far as (v0 + v1) T / 2, give or take a T² / 4.
+    /// run. From velocity v0 to v1 within T, a joint comes as far as (v0 + v1) T / 2, with an error of at
+    /// most a T² / 4.
     [[nodiscard]] constexpr bool can_follow(const MotionRun& before, const MotionRun& run) const noexcept {
         bool can = false;
         for (const int skip : {0, 1}) {

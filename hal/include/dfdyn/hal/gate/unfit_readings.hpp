@@ -4,13 +4,14 @@
 #include "dfdyn/hal/gate/motion_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 
 namespace dfdyn::hal {
 
 /// Readings since the last trusted one that are of no use as positions: their time is known to a period only,
-/// or the device was not itself. They still show what the encoder does. O(1).
+/// or the device was not ready. They still show what the encoder does. O(1).
 class UnfitReadings {
   public:
     /// `max_age_ns`: how far apart consecutive readings may be; `jitter_ns`: largest lateness of a stamp.
@@ -18,9 +19,12 @@ class UnfitReadings {
                             std::int64_t jitter_ns) noexcept
         : tolerance_(tolerance), max_age_ns_(max_age_ns), jitter_ns_(jitter_ns) {}
 
-    /// Takes a reading of a device that was not itself.
+    /// Takes a reading of a device that says that it is not ready.
     constexpr void take(const EncoderReading& reading) noexcept {
-        first_ = first_ && leads_to_next(reading) ? first_ : reading;
+        if (!leads_to_next(reading)) {
+            agree_ = false;
+        }
+        untimed_ = false;
         last_ = reading;
     }
 
@@ -28,12 +32,19 @@ class UnfitReadings {
     constexpr void take_untimed(const EncoderReading& reading) noexcept {
         moved_ = moved_ || (is_recent(reading, max_age_ns_ + 2 * jitter_ns_) &&
                             magnitude(reading.position_rad - last_->position_rad) > 2 * reading.step_rad);
-        take(reading);
+        if (reading.zero || !leads_to_next(reading)) {
+            agree_ = false;
+        } else if (!agree_ && untimed_) {
+            agree_ = true;
+            first_ = {*last_, reading};
+        }
+        untimed_ = !reading.zero;
+        last_ = reading;
     }
 
     /// Forgets them: the joint is trusted.
     constexpr void clear() noexcept {
-        first_.reset();
+        agree_ = untimed_ = false;
         last_.reset();
         moved_ = false;
     }
@@ -56,13 +67,15 @@ class UnfitReadings {
         return is_recent(reading, 3 * max_age_ns_) && !is_far(*last_, reading);
     }
 
-    /// Returns whether they lead to this reading, one to the next, from one to which the joint cannot have
-    /// moved.
+    /// Returns whether they lead to this reading, one to the next, from two of unknown time to which the
+    /// joint cannot have moved. A single one may have a flipped bit, and a zero or a device that is not ready
+    /// shows no place.
     [[nodiscard]] constexpr bool lead_from_afar(const EncoderReading& trusted,
                                                 const EncoderReading& reading) const noexcept {
-        return last_ && leads_to_next(reading) &&
-               magnitude(first_->position_rad - trusted.position_rad) >
-                   tolerance_.reach_untimed(first_->stamp_ns - trusted.stamp_ns, reading.step_rad);
+        return agree_ && leads_to_next(reading) && std::ranges::all_of(first_, [&](const auto& first) {
+                   return magnitude(first.position_rad - trusted.position_rad) >
+                          tolerance_.reach_untimed(first.stamp_ns - trusted.stamp_ns, reading.step_rad);
+               });
     }
 
     /// Returns whether a joint cannot move from one reading to the other, whose time is known to a period.
@@ -85,9 +98,12 @@ class UnfitReadings {
     MotionTolerance tolerance_;
     std::int64_t max_age_ns_;
     std::int64_t jitter_ns_;
-    std::optional<EncoderReading> first_; ///< of those that lead to the last, one to the next
+    std::array<EncoderReading, 2>
+        first_{};        ///< where they agree: of those that lead to the last, one to the next
+    bool agree_ = false; ///< two of unknown time in a row, and all since
     std::optional<EncoderReading> last_;
-    bool moved_ = false; ///< those of unknown time
+    bool untimed_ = false; ///< the last one, and it is no zero
+    bool moved_ = false;   ///< those of unknown time
 };
 
 } // namespace dfdyn::hal
