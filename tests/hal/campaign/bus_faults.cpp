@@ -62,7 +62,7 @@ void corrupt_bits(FaultSite& site) {
 
 static void stray_stamp(FaultSite& site, std::int64_t sign) {
     constexpr std::array<std::int64_t, 4> sizes{3'000'000, 40'000'000, 700'000'000, 3'600'000'000'000};
-    int left = 3;
+    auto left = 1 + site.pick(8); // more and fewer than a sampler leaves out in a row
     site.change([&](Sent& sent) {
         if (left > 0 && site.chance(0.05)) {
             sent.frame.stamp_ns += sign * sizes[static_cast<std::size_t>(site.pick(4))];

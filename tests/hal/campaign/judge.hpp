@@ -145,7 +145,7 @@ class Judge {
     }
 
     /// Whether a reading is of a run that begins after more than `max_age` without a right reading, where the
-    /// limits allow the joint to be by then, and not at the device's zero. Such a run goes on as a joint does
+    /// limits allow the joint to be by then, and not at the device's zero. Such a run looks like a joint
     /// that went there meanwhile, however far off it is later.
     [[nodiscard]] bool after_silence(std::size_t joint, const JointSight::Shown& shown) const {
         const JointSight::Run& run = sight_[joint].run(shown.run);
@@ -159,9 +159,8 @@ class Judge {
                                 double tolerance, Counts counts) const {
         const auto time_ns = static_cast<std::int64_t>(1e9 * claim.time_s);
         const auto unknown_ns = static_cast<std::int64_t>(1e9 * claim.unknown_s);
-        const std::int64_t late_ns = arm_.synchronous ? answer_ns : 0; // what is shown is of the SYNC before
         return sight_[joint].shows(what, claim.value, tolerance, time_ns - unknown_ns - bus_jitter,
-                                   time_ns + bus_jitter + late_ns, counts);
+                                   time_ns + bus_jitter, counts);
     }
 
     /// Whether an effort comes in frames with a position that is wrong or undecidable, as it is there.

@@ -36,13 +36,16 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
         clock_ns = sent.clock_ns;
         const std::int64_t time_ns = sent.frame.stamp_ns - sent.clock_ns;
         const bool stray = std::abs(time_ns - sent.true_ns) > stray_ns;
-        if (left_out > 0 || stray || !site.is_reading(sent, joint)) {
+        if (left_out > 0 || stray) {
+            continue;
+        }
+        sync_ns_ = sent.role == Sent::Role::sync ? time_ns : sync_ns_;
+        if (!site.is_reading(sent, joint)) {
             continue;
         }
         if (sent.corrupted) {
             blind_.push_back({time_ns, std::max<std::int64_t>(1, time_ns - last_.time_ns), span_ns()});
-            const wire::Joint& shown = sent.shown[joint]; // the bit may be another one
-            shown_.push_back({time_ns, shown.position_rad, shown.effort, false, runs_.size() - 1});
+            show(site, joint, sent, time_ns); // the bit may be another one
             continue;
         }
         examine(site, joint, sent, time_ns);
@@ -63,12 +66,26 @@ bool JointSight::is_on_line(const Shown& one, const Shown& next, double Shown::*
     return begin_ns <= end_ns && is_between(value, at(begin_ns), at(end_ns), tolerance);
 }
 
+bool JointSight::is_right(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns) {
+    const double t = seconds_of(time_ns);
+    const double late_s = seconds_of(site.arm.synchronous ? answer_ns : bus_jitter);
+    return !sent.uninformative &&
+           is_between(sent.shown[joint].position_rad, site.truth.position(joint, t - late_s),
+                      site.truth.position(joint, t), 1e-7);
+}
+
+void JointSight::show(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns) {
+    const bool answers = site.arm.synchronous && sync_ns_ <= time_ns && time_ns - sync_ns_ < bus_period;
+    const wire::Joint& shown = sent.shown[joint];
+    shown_.push_back({answers ? sync_ns_ : time_ns, shown.position_rad, shown.effort,
+                      is_right(site, joint, sent, time_ns), runs_.size() - 1});
+}
+
 void JointSight::examine(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns) {
     const double t = seconds_of(time_ns);
     const double velocity = site.truth.velocity(joint, t);
     const double shown = sent.shown[joint].position_rad;
     const double error = shown - site.truth.position(joint, t);
-    const double late_s = seconds_of(site.arm.synchronous ? answer_ns : bus_jitter);
     const double from_zero = shown - site.arm.zero_rad[joint];
     const double step = site.arm.step_rad[joint];
     const Reading reading{.true_ns = sent.true_ns,
@@ -76,9 +93,7 @@ void JointSight::examine(const FaultSite& site, std::size_t joint, const Sent& s
                           .time_ns = time_ns,
                           .shown_rad = shown,
                           .error_rad = error,
-                          .right =
-                              !sent.uninformative && is_between(shown, site.truth.position(joint, t - late_s),
-                                                                site.truth.position(joint, t), 1e-7)};
+                          .right = is_right(site, joint, sent, time_ns)};
     const double motion = 1.5 * std::abs(velocity) * seconds_of(bus_period) + 3 * step;
     take({.begin_ns = sent.true_ns,
           .error_rad = error,
@@ -86,7 +101,7 @@ void JointSight::examine(const FaultSite& site, std::size_t joint, const Sent& s
           .at_zero = std::abs(from_zero) <= motion && !can_move_to(reading, step),
           .velocity = velocity},
          reading);
-    shown_.push_back({time_ns, shown, sent.shown[joint].effort, reading.right, runs_.size() - 1});
+    show(site, joint, sent, time_ns);
 }
 
 bool JointSight::can_move_to(const Reading& reading, double step_rad) const {
@@ -104,6 +119,7 @@ void JointSight::begin_run(Run seen, const Reading& reading) {
     if (earlier != wrong_.rend() && std::abs(reading.error_rad) > near_rad) {
         runs_.push_back(earlier->run);
         runs_.back().begin_ns = seen.begin_ns;
+        runs_.back().at_zero = earlier->run.at_zero || seen.at_zero;
         return;
     }
     const Reading& before = last_established_;
@@ -126,8 +142,11 @@ void JointSight::take(Run seen, const Reading& reading) {
     Run& run = runs_.back();
     ++run.readings;
     last_ = reading;
-    if (std::abs(reading.error_rad) > near_rad && run.readings == many) {
-        wrong_.push_back({run, reading.error_rad});
+    if (std::abs(reading.error_rad) > near_rad && run.readings >= many) {
+        if (wrong_.empty() || wrong_.back().number != runs_.size()) {
+            wrong_.push_back({run, runs_.size(), 0});
+        }
+        wrong_.back().error_rad = reading.error_rad;
     }
     const std::int64_t needed_ns = std::min(run.blind_ns, longest_trial_ns);
     right_ = reading.right ? right_ + 1 : 0;

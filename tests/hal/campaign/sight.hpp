@@ -13,10 +13,10 @@ namespace dfdyn::tests {
 /// limits allow.
 ///
 /// The readings form runs. A run begins after a silence, or where the error of what the device shows jumps.
-/// Where the error is that of an earlier run of many readings, that run goes on. After a silence or a jump,
-/// right readings end the time without a right reading only after as long again, at most 0.42 s. Nor does a
-/// single right reading end it: it and the wrong one before it contradict each other, and either may be
-/// right.
+/// Where the error is that of the last reading of an earlier run of many readings, that run continues; not
+/// past a jump to the zero. After a silence or a jump, right readings end the time without a right reading
+/// only after as long again, at most 0.42 s. Nor does a single right reading end it: it and the wrong one
+/// before it contradict each other, and either may be right.
 class JointSight {
   public:
     struct Run {
@@ -39,9 +39,9 @@ class JointSight {
 
     /// What the device shows at a time.
     struct Shown {
-        std::int64_t time_ns;
+        std::int64_t time_ns; ///< of the SYNC that the frame answers, or of the frame
         double position_rad, effort;
-        bool right;
+        bool right;      ///< the position as it was sent
         std::size_t run; ///< of `run`
     };
 
@@ -86,6 +86,8 @@ class JointSight {
                            double tolerance, std::int64_t from_ns, std::int64_t to_ns);
     /// Whether the joint can have moved there from the reading before: then it only passes its zero.
     [[nodiscard]] bool can_move_to(const Reading& reading, double step_rad) const;
+    static bool is_right(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns);
+    void show(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns);
     void examine(const FaultSite& site, std::size_t joint, const Sent& sent, std::int64_t time_ns);
     void take(Run seen, const Reading& reading);
     void begin_run(Run seen, const Reading& reading);
@@ -96,11 +98,13 @@ class JointSight {
     std::vector<Shown> shown_; ///< by time
     Reading last_{}, last_established_{};
     std::deque<std::int64_t> known_ns_; ///< times of the last right readings, since the clock was set
+    std::int64_t sync_ns_ = 0;          ///< of the last SYNC
     int right_ = 0;                     ///< readings in a row
     bool set_back_ = false;             ///< the clock, since `last_established_`
     struct WrongRun {
         Run run;
-        double error_rad; ///< of its last reading
+        std::size_t number; ///< of runs up to it
+        double error_rad;   ///< of its last reading
     };
     std::vector<WrongRun> wrong_; ///< of many readings, since `last_established_`
 };
