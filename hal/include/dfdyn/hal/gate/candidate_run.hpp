@@ -48,6 +48,15 @@ class CandidateRun {
         return run_.readings() >= 2 && !comparison.continues(run_, reading);
     }
 
+    /// Returns true if no other reading came shortly before this one.
+    [[nodiscard]] constexpr bool silent_before(const EncoderReading& reading,
+                                               const RunComparison& comparison) const noexcept {
+        const auto silent = [&](const MotionRun& run) {
+            return run.empty() || !comparison.near(run.last().stamp_ns, reading.stamp_ns);
+        };
+        return silent(run_) && silent(other_);
+    }
+
     /// Forgets the run, but not that runs contradicted each other.
     constexpr void interrupt() noexcept {
         before_ = run_.empty() ? before_ : run_;

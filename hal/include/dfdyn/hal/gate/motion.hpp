@@ -22,9 +22,9 @@ namespace dfdyn::hal {
 ///   readings: velocity may change at once (an impact), position may not. After a silence: no further than
 ///   the limits allow. It takes twenty times as many readings where the readings contradicted each other, or
 ///   where the clock was set and the joint's motion does not lead there.
-/// - A run that began at the device's zero, where no motion led, is of an encoder that counts from where it
-///   was switched on (ZeroWatch). It does not get its zero back by itself: no position is trusted any more
-///   (`position_lost`) until the program starts again.
+/// - A run that began at the device's zero and leaves it, where no motion led, is of an encoder that counts
+///   from where it was switched on (ZeroWatch): `position_lost` until the program starts again. Not one that
+///   takes back the jump before it: a bit was stuck.
 /// - Another run that does not connect is refused for as long as its readings lead from one to the next. A
 ///   jump or a silence that leads to where the joint can be ends it, after twenty times as many readings. So
 ///   do twenty times as many readings themselves where the jump was as small as the velocity limit allows in
@@ -36,8 +36,6 @@ namespace dfdyn::hal {
 ///   begins with a jump that takes back most of the way from there.
 /// - Readings that jumped away from a joint that was trusted, five times as far as it can have moved, are
 ///   refused until they come back, jump further, or fall silent for so long that it can be there (AwayWatch).
-/// - A run at the device's zero that takes back the jump before it is of a bit that was stuck, not of a
-///   restart.
 /// - A moving joint that repeats its last reading, bit for bit, where it cannot have stopped, is frozen until
 ///   the readings change. So is one that returns from a silence with readings that do not change, unless it
 ///   was at rest and still is where it was.
@@ -79,7 +77,9 @@ class MotionGate : private MotionEvidence {
     constexpr void glance(EncoderReading reading) noexcept {
         unwrap_near(reading, trusted_.last().position_rad);
         candidate_.contradict(unfit_.contradict(reading));
-        const bool expected = is_expected(reading) || unfit_.lead_to(reading);
+        const bool by_motion = is_expected(reading);
+        const bool expected = by_motion || unfit_.lead_to(reading);
+        counts_from_zero_ = counts_from_zero_ && !by_motion;
         const bool returns = away_.silent_s(reading.stamp_ns) >= fastest_boot_s();
         follow_away(reading);
         if (!expected && (returns || unfit_.is_far(unfit_.last_or(trusted_.last()), reading))) {
@@ -145,7 +145,7 @@ class MotionGate : private MotionEvidence {
   private:
     /// Follows where the readings are.
     constexpr void follow_away(EncoderReading reading) noexcept {
-        if (!trusted_.empty() && unwrap(reading)) {
+        if (!trusted_.empty() && !reading.zero && unwrap(reading)) { // a zero shows no place
             away_.take(reading);
         }
         away_.hear(reading.stamp_ns);
@@ -204,10 +204,11 @@ class MotionGate : private MotionEvidence {
             }
             return leads;
         }
-        const bool reached = has_lost_zero() ? tolerance_.reaches(refused_.last(), reading)
-                                             : recently(refused_.last().stamp_ns, reading.stamp_ns) &&
-                                                   comparison_.reaches_after_silence(refused_, reading);
+        const bool reached = tolerance_.reaches(refused_.last(), reading) &&
+                             (has_lost_zero() || (recently(refused_.last().stamp_ns, reading.stamp_ns) &&
+                                                  comparison_.reaches_after_silence(refused_, reading)));
         const bool same = refused_.readings() >= config_.qualification.readings &&
+                          (candidate_.silent_before(reading, comparison_) || !refused_time_known_) &&
                           comparison_.goes_on_without_silence(refused_, reading);
         const bool can_be = same || (refused_time_known_ ? reached : has_lost_zero());
         const bool goes_on = can_be && !comparison_.continues(run(), reading);
@@ -309,8 +310,7 @@ class MotionGate : private MotionEvidence {
     /// Refuses the run that ends with this reading, and what continues it.
     constexpr Verdict lose(const EncoderReading& reading) noexcept {
         const bool new_here = !lost() || !connects(refused_, run());
-        const bool at_zero = begins_at_zero(run().first(), run().begin_line(0, config_.period_ns)) &&
-                             !reverses_jump_before(run());
+        const bool at_zero = begins_at_zero(run()) && !reverses_jump_before(run());
         zero_lost_ = at_zero || (zero_lost_ && !new_here);
         begin_loss(run());
         candidate_.interrupt();

@@ -143,8 +143,7 @@ class MotionEvidence {
     [[nodiscard]] constexpr bool broke_off_at_zero(const EncoderReading& reading) const noexcept {
         constexpr int min_readings = 3;
         return !trusted_.empty() && run().readings() >= min_readings &&
-               !comparison_.near(run().last().stamp_ns, reading.stamp_ns) &&
-               begins_at_zero(run().first(), run().begin_line(0, config_.period_ns)) &&
+               !comparison_.near(run().last().stamp_ns, reading.stamp_ns) && begins_at_zero(run()) &&
                !comes_from_trusted(run(), expected_);
     }
 
@@ -175,7 +174,8 @@ class MotionEvidence {
         }
         const std::int64_t silence_ns = run().first().stamp_ns - trusted_.last().stamp_ns;
         const bool disturbed =
-            (!time_known_ && !comparison_.reaches_after_silence(trusted_, run().first())) ||
+            (!time_known_ && !(reaches_hidden(run().first()) &&
+                               comparison_.reaches_after_silence(trusted_, run().first()))) ||
             (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
         const bool doubtful = time_known_ && !connects(trusted_, run());
         return lost() || disturbed || doubtful || candidate_.contradicted() ? most_readings() : least;
@@ -200,7 +200,7 @@ class MotionEvidence {
 
     /// Returns true if the run goes on from the trusted readings, and is not of a restarted encoder.
     [[nodiscard]] constexpr bool comes_from_trusted(const MotionRun& run, bool expected) const noexcept {
-        const bool connected = time_known_ ? connects(trusted_, run) : reaches_hidden(run.first());
+        const bool connected = !time_known_ || connects(trusted_, run);
         const bool from_afar = time_known_ && unfit_.lead_from_afar(trusted_.last(), run.first());
         return ((connected && !from_afar) || comes_from_established(run)) &&
                (expected || !restarted_at_zero(run));
@@ -216,15 +216,9 @@ class MotionEvidence {
     /// may have been of a fault: it begins soon after them, with a jump that takes back most of their way off
     /// the line of the earlier ones.
     [[nodiscard]] constexpr bool comes_from_established(const MotionRun& run) const noexcept {
-        constexpr double most_left = 0.5;
-        const MotionLine before = established_.end_line(0, config_.period_ns);
-        const MotionLine last = trusted_.end_line(0, config_.period_ns);
-        const double off_rad = trusted_.first().position_rad - before.at(trusted_.first().stamp_ns);
-        const double back_rad = run.first().position_rad - last.at(run.first().stamp_ns);
         return !is_established() && run.first().stamp_ns < trial_end_ns_ &&
-               magnitude(off_rad + back_rad) <= most_left * magnitude(off_rad) &&
-               !begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
-               tolerance_.reaches(established_.last(), run.first()) &&
+               comparison_.takes_back(established_, trusted_, run, longest_trial_ns) &&
+               !begins_at_zero(run) && tolerance_.reaches(established_.last(), run.first()) &&
                comparison_.reaches_after_silence(established_, run.first());
     }
 
@@ -303,6 +297,11 @@ class MotionEvidence {
         return zero_.explains(first, begin, trusted_.end_line(0, config_.period_ns).velocity,
                               hidden ? clock_s : 0);
     }
+    /// The same, of the first two readings of a run: one may be late.
+    [[nodiscard]] constexpr bool begins_at_zero(const MotionRun& run) const noexcept {
+        return begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) ||
+               begins_at_zero(run.first(), run.begin_line(1, config_.period_ns));
+    }
 
     /// Shortest silence of a board that was switched on.
     [[nodiscard]] constexpr double fastest_boot_s() const noexcept {
@@ -314,8 +313,7 @@ class MotionEvidence {
     [[nodiscard]] constexpr bool restarted_at_zero(const MotionRun& run) const noexcept {
         const bool long_enough = !time_known_ || seconds_between(trusted_.last().stamp_ns,
                                                                  run.first().stamp_ns) >= fastest_boot_s();
-        return long_enough && begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
-               !stood_at(run.first()) && !reverses_jump_before(run);
+        return long_enough && begins_at_zero(run) && !stood_at(run.first()) && !reverses_jump_before(run);
     }
 
     // What MotionGate changes: NOLINTBEGIN(*-non-private-member-variables-in-classes)

@@ -74,6 +74,24 @@ class RunComparison {
         return line.span_s > 0 && magnitude(off) <= tolerance_.error(line, 2 * period_s, to.step_rad);
     }
 
+    /// Returns true if a run takes back most of the way from the readings before to those that followed them
+    /// elsewhere. The motion from more than `longest_ns` before tells nothing. Meanwhile the joint moved as
+    /// the readings elsewhere, or as those of the run.
+    [[nodiscard]] constexpr bool takes_back(const MotionRun& before, const MotionRun& elsewhere,
+                                            const MotionRun& run, std::int64_t longest_ns) const noexcept {
+        constexpr double most_left = 0.5;
+        const MotionLine from = before.end_line(0, tolerance_.period_ns);
+        const MotionLine left = elsewhere.end_line(0, tolerance_.period_ns);
+        const MotionLine back = run.begin_line(0, tolerance_.period_ns);
+        const EncoderReading& away = elsewhere.first();
+        const double expected_rad =
+            away.stamp_ns - from.end_ns > longest_ns ? from.end_rad : from.at(away.stamp_ns);
+        const double off_rad = away.position_rad - expected_rad;
+        const double as_elsewhere_rad = run.first().position_rad - left.at(run.first().stamp_ns) + off_rad;
+        const double as_run_rad = back.at(away.stamp_ns) - expected_rad;
+        return std::min(magnitude(as_elsewhere_rad), magnitude(as_run_rad)) <= most_left * magnitude(off_rad);
+    }
+
     /// Returns true if the motions before and after a jump meet in between. Either may have one reading that
     /// is off. `longest_s`: a longer time between them allows no larger distance. `share(line)`: the part of
     /// the limits that is allowed for a run that begins with this line.

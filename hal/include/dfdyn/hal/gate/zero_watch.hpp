@@ -25,15 +25,13 @@ class ZeroWatch {
     constexpr void take(const EncoderReading& reading, bool expected) noexcept {
         const bool recent = !counted_.empty() && reading.stamp_ns - counted_.last().stamp_ns <= max_age_ns_;
         const bool repeats = reading.position_rad == counted_.first().position_rad;
-        if (recent && repeats && counted_.still()) { // it is not ready yet
-            counted_ = {};
-            counted_.extend(reading, tolerance_);
-        } else if (recent && counted_.leads_to(reading, tolerance_)) {
-            counted_.extend(reading, tolerance_);
-        } else if (is_near_zero(reading) && !expected && !follows_better(reading)) {
-            counted_ = {};
-            counted_.extend(reading, tolerance_);
+        const bool waits = recent && repeats && counted_.still(); // it is not ready yet
+        const bool leads = recent && !waits && counted_.leads_to(reading, tolerance_);
+        if (!leads && !waits && (!is_near_zero(reading) || expected || follows_better(reading))) {
+            return;
         }
+        counted_ = leads ? counted_ : MotionRun();
+        counted_.extend(reading, tolerance_);
     }
 
     /// Returns true if a run begins at the zero, or as far from it as the joint goes in a few periods, or
@@ -41,11 +39,14 @@ class ZeroWatch {
     /// `hidden_s`: time before the run of which no reading is known.
     [[nodiscard]] constexpr bool explains(const EncoderReading& first, const MotionLine& begin,
                                           double trusted_velocity, double hidden_s) const noexcept {
-        if (magnitude(first.from_zero_rad) <= travel(first, begin, trusted_velocity, hidden_s)) {
+        if (magnitude(first.from_zero_rad) <= travel(first, begin, trusted_velocity, hidden_s) &&
+            leaves_zero(first, begin, hidden_s)) {
             return true;
         }
-        if (counted_.empty() || magnitude(counted_.first().from_zero_rad) >
-                                    travel(counted_.first(), begin, trusted_velocity, hidden_s)) {
+        const bool counts =
+            !counted_.empty() && magnitude(counted_.first().from_zero_rad) <=
+                                     travel(counted_.first(), begin, trusted_velocity, hidden_s);
+        if (!counts || !(counted_leaves_zero(0, hidden_s) || counted_leaves_zero(1, hidden_s))) {
             return false;
         }
         return goes_on(first, begin, trusted_velocity);
@@ -74,8 +75,9 @@ class ZeroWatch {
         const bool within = first.stamp_ns >= counted_.first().stamp_ns &&
                             first.stamp_ns <= counted_.last().stamp_ns &&
                             counted_.readings() >= min_counted_readings;
+        const bool moved = counted_.readings() > 1; // one that is off may have joined the zero
         return within || leads_back(first, begin, trusted_velocity, counted_.first()) ||
-               leads_back(first, begin, trusted_velocity, counted_.last());
+               (moved && leads_back(first, begin, trusted_velocity, counted_.last()));
     }
     [[nodiscard]] constexpr bool leads_back(const EncoderReading& first, const MotionLine& begin,
                                             double trusted_velocity,
@@ -88,6 +90,21 @@ class ZeroWatch {
         const double back_rad = first.from_zero_rad - begin.velocity * since_s - to.from_zero_rad;
         return off <= travel(first, begin, trusted_velocity, since_s) &&
                (begin.span_s <= 0 || magnitude(back_rad) <= tolerance_.error(begin, since_s, first.step_rad));
+    }
+
+    /// Returns whether a run may have been at the zero shortly before: an encoder that counts from there
+    /// moves away from it. A joint that comes to its zero was on the other side of the reading.
+    [[nodiscard]] constexpr bool leaves_zero(const EncoderReading& first, const MotionLine& begin,
+                                             double hidden_s) const noexcept {
+        const double before_s = hidden_s + periods * seconds_between(0, tolerance_.period_ns);
+        const double before_rad = first.from_zero_rad - begin.velocity * before_s;
+        const double nearest_rad = std::min(magnitude(first.from_zero_rad), magnitude(before_rad));
+        return begin.span_s <= 0 || first.from_zero_rad * before_rad <= 0 ||
+               nearest_rad <= tolerance_.error(begin, before_s, first.step_rad);
+    }
+
+    [[nodiscard]] constexpr bool counted_leaves_zero(int skip, double hidden_s) const noexcept {
+        return leaves_zero(counted_.first(), counted_.begin_line(skip, tolerance_.period_ns), hidden_s);
     }
 
     /// Returns whether the readings that are followed began closer to the zero than this one.
@@ -103,7 +120,6 @@ class ZeroWatch {
     /// How far from the zero a joint is after `since_s` and the time until its first reading.
     [[nodiscard]] constexpr double travel(const EncoderReading& first, const MotionLine& begin,
                                           double trusted_velocity, double since_s) const noexcept {
-        constexpr double periods = 1.5;
         const double fastest =
             std::max(magnitude(begin.velocity), since_s > 0 ? magnitude(trusted_velocity) : 0);
         return fastest * (since_s + periods * seconds_between(0, tolerance_.period_ns)) + 3 * first.step_rad;
@@ -114,6 +130,7 @@ class ZeroWatch {
         return magnitude(reading.from_zero_rad) <= moved + 3 * reading.step_rad;
     }
 
+    static constexpr double periods = 1.5;   ///< until the first reading after the zero
     static constexpr double memory_s = 0.05; // a board shows its zero at the end of its start
 
     MotionTolerance tolerance_;
