@@ -290,4 +290,17 @@ TEST_CASE("a long silence makes samples for a second, and none for the rest of i
     CHECK(bench.instants.size() - count == 1);
 }
 
+TEST_CASE("stamps from one end of the integers to the other leave the samples at the period") {
+    constexpr std::int64_t first = std::numeric_limits<std::int64_t>::min() + 1000 * ms;
+    constexpr std::int64_t last = std::numeric_limits<std::int64_t>::max() - 10'000 * ms;
+    Bench bench(timer);
+    bench.frames(first, first + 4 * ms, ms);
+    bench.frame(last);
+    const auto count = bench.times.size();
+    bench.frames(last + ms, last + 10 * ms, ms);
+    CHECK(count <= 502); // those of a second
+    CHECK(bench.times.size() - count == 5);
+    CHECK(std::is_sorted(bench.times.begin(), bench.times.end()));
+}
+
 } // namespace sampler_test

@@ -43,7 +43,10 @@ template <class Arm, std::size_t capacity = 16>
 class Sampler {
   public:
     static constexpr std::int64_t longest_silence_ns = 1'000'000'000;
-    static constexpr std::size_t most_strays = 3; ///< in a row
+    /// In a row. A choice between two costs: each more keeps the first frames after every silence waiting for
+    /// one frame more, and three are less than what an arm with a sensor sends in a period. With fewer,
+    /// frames that an adapter stamps together move the clock. Four stamps that are ahead alike are believed.
+    static constexpr std::size_t most_strays = 3;
 
     explicit constexpr Sampler(const SamplerConfig& config) noexcept
         : config_(config), delay_ns_(config.delay_ns) {}
@@ -192,8 +195,11 @@ class Sampler {
 
     /// Leaves out what a long silence made due.
     constexpr void leave_out_before(std::int64_t time_ns) noexcept {
-        if (due_ns_ < time_ns) {
-            due_ns_ += (time_ns - due_ns_ + config_.period_ns - 1) / config_.period_ns * config_.period_ns;
+        if (due_ns_ < time_ns) { // by more than int64 holds, where stamps are of both ends of it
+            const auto late_ns = static_cast<std::uint64_t>(wrapping_difference(time_ns, due_ns_));
+            const auto past_ns =
+                static_cast<std::int64_t>(late_ns % static_cast<std::uint64_t>(config_.period_ns));
+            due_ns_ = past_ns == 0 ? time_ns : wrapping_sum(time_ns, config_.period_ns - past_ns);
         }
     }
 
