@@ -4,7 +4,7 @@
 
 namespace sync_step_test {
 
-using dfdyn::hal::SyncStep;
+using namespace dfdyn::hal;
 
 constexpr std::int64_t us = 1000;
 constexpr std::int64_t period = 2000 * us;
@@ -122,6 +122,32 @@ TEST_CASE("two answers between which a SYNC was lost do not show that a device h
         }
         CHECK_FALSE(step.answer(cycle * period + 700 * us));
     }
+}
+
+TEST_CASE("an answer and a copy of the one before do not show that a device has caught up") {
+    SyncStep step = running(50);
+    step.sync(50 * period);
+    for (int cycle = 51; cycle < 200; ++cycle) { // from here on each answer is that to the SYNC before
+        step.sync(cycle * period);
+        if (cycle % 5 == 0) {
+            CHECK_FALSE(step.answer(cycle * period + 550 * us, true));
+        }
+        CHECK_FALSE(step.answer(cycle * period + 700 * us));
+    }
+}
+
+TEST_CASE("an answer is a copy where it has the data of one of the two before") {
+    AnswerContents contents;
+    const auto frame = [](std::uint8_t value) {
+        Frame one;
+        one.data[3] = value;
+        return one;
+    };
+    CHECK_FALSE(contents.take(frame(1)));
+    CHECK_FALSE(contents.take(frame(2)));
+    CHECK(contents.take(frame(1)));
+    CHECK_FALSE(contents.take(frame(3)));
+    CHECK_FALSE(contents.take(frame(2)));
 }
 
 } // namespace sync_step_test

@@ -186,9 +186,7 @@ class Cia402Drive {
         const bool to_sync = config_.synchronous && synchronised_;
         value.stamp_ns = to_sync ? sync_ns_ : frame.stamp_ns;
         SyncStep& step = positions ? position_step_ : effort_step_;
-        std::array<std::uint8_t, 8>& content = positions ? position_content_ : effort_content_;
-        const bool repeats = std::equal(content.begin(), content.end(), frame.data.begin());
-        std::copy_n(frame.data.begin(), content.size(), content.begin());
+        const bool repeats = (positions ? position_content_ : effort_content_).take(frame);
         const bool in_step = !to_sync || step.answer(frame.stamp_ns, repeats);
         const Reason condition = heartbeat_.reason(frame.stamp_ns);
         const std::span<const std::uint8_t> data(frame.data.data(), frame.length);
@@ -291,8 +289,7 @@ class Cia402Drive {
     Heartbeat heartbeat_;
     SyncStep position_step_;
     SyncStep effort_step_;
-    std::array<std::uint8_t, 8> position_content_{}; ///< data of the last PDO
-    std::array<std::uint8_t, 8> effort_content_{};
+    AnswerContents position_content_, effort_content_; ///< of the last PDOs
     std::int64_t sync_ns_ = 0;
     bool synchronised_ = false;
     bool encoder_fault_ = false;

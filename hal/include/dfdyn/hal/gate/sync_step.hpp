@@ -1,10 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/frame.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace dfdyn::hal {
+
+/// The data of the last two answers of a device. O(1).
+class AnswerContents {
+  public:
+    /// Takes an answer, and returns whether it has the data of one of the two before.
+    constexpr bool take(const Frame& frame) noexcept {
+        Data data{};
+        std::copy_n(frame.data.begin(), data.size(), data.begin());
+        const bool repeats = data == last_[0] || data == last_[1];
+        last_ = {data, last_[0]};
+        return repeats;
+    }
+
+  private:
+    using Data = std::array<std::uint8_t, 8>;
+    std::array<Data, 2> last_{};
+};
 
 /// Decides whether the answer of a device to a SYNC belongs to the last SYNC. A device answers each SYNC
 /// once. An answer is in step unless
@@ -31,12 +51,14 @@ class SyncStep {
     }
 
     /// Takes an answer; whether it is in step. Before the first SYNC none is. `repeats`: it has the same
-    /// content as the one before; as a second one since the SYNC it may be a copy, and shows nothing.
+    /// content as one of the two before, and may be a copy. Then two answers do not show that the device has
+    /// caught up.
     constexpr bool answer(std::int64_t stamp_ns, bool repeats = false) noexcept {
         answered_ = true;
         if (!synchronised_ || (repeats && answers_ > 0)) {
             return false;
         }
+        first_repeats_ = answers_ == 0 ? repeats : first_repeats_;
         const std::int64_t after_ns = stamp_ns - sync_ns_;
         const bool usual = usual_ns_ >= 0 && distance(after_ns, usual_ns_) <= period_ns_ / 8 &&
                            distance(after_ns + period_ns_, usual_ns_) > period_ns_ / 4;
@@ -46,7 +68,8 @@ class SyncStep {
         }
         ++answers_;
         if (answers_ > 1) {
-            const bool catches_up = after_ns <= period_ns_; // later it may answer a SYNC that was lost
+            const bool catches_up =
+                after_ns <= period_ns_ && !first_repeats_; // later it may answer a SYNC that was lost
             missing_ -= catches_up && missing_ > 0 ? 1 : 0;
             behind_ = (behind_ || late_ns_ >= 0) && missing_ > 0; // 0: all have come
             late_ns_ = -1;
@@ -141,10 +164,11 @@ class SyncStep {
     int answers_ = 0;              ///< since the last SYNC
     bool synchronised_ = false;
     bool answered_ = false;
-    int missing_ = 0;       ///< answers to earlier SYNCs that may yet come
-    bool late_ = false;     ///< the last answer
-    bool behind_ = false;   ///< all answers may be those to the SYNC before
-    int usual_answers_ = 0; ///< in a row, while they may be behind
+    bool first_repeats_ = false; ///< the first answer since the last SYNC may be a copy
+    int missing_ = 0;            ///< answers to earlier SYNCs that may yet come
+    bool late_ = false;          ///< the last answer
+    bool behind_ = false;        ///< all answers may be those to the SYNC before
+    int usual_answers_ = 0;      ///< in a row, while they may be behind
 };
 
 } // namespace dfdyn::hal
