@@ -26,7 +26,7 @@ struct cia402 {
         static constexpr double step_rad = wire::turn / 1048576;
         static constexpr bool synchronous = true;
 
-        static hal::Cia402Drive drive(int node, bool synchronous, int bits, double zero_rad) noexcept {
+        static hal::Cia402Drive drive(int node, bool at_sync, int bits, double zero_rad) noexcept {
             const int length = bits / 8 + 2;
             return hal::Cia402Drive({.node = node,
                                      .joint = node - 1,
@@ -43,7 +43,7 @@ struct cia402 {
                                                 .length = 16,
                                                 .encoding = hal::Encoding::signed_integer,
                                                 .factor = 1e-3},
-                                     .synchronous = synchronous});
+                                     .synchronous = at_sync});
         }
         static auto boards() noexcept { return std::array{drive(1, true, 32, 0), drive(2, true, 32, 0)}; }
         static wire::Frames frames(std::size_t board, const wire::Joints& joints) {
