@@ -25,13 +25,6 @@ Eigen::Matrix3d symmetric(const Eigen::Matrix<double, 6, 1>& values) {
     return matrix;
 }
 
-/// Second moments about the centre of mass.
-Eigen::Matrix3d central_moments(const InertialParameters& parameters) {
-    const Eigen::Matrix4d moments = pseudo_inertia(parameters);
-    const Eigen::Vector3d first = moments.topRightCorner<3, 1>();
-    return moments.topLeftCorner<3, 3>() - first * first.transpose() / parameters[0];
-}
-
 } // namespace
 
 InertialParameters body_parameters(double mass, const Eigen::Vector3d& centre,
@@ -43,6 +36,18 @@ InertialParameters body_parameters(double mass, const Eigen::Vector3d& centre,
     moments.bottomLeftCorner<1, 3>() = mass * centre.transpose();
     moments(3, 3) = mass;
     return parameters_of(moments);
+}
+
+CentralBody central_body(const InertialParameters& parameters) {
+    CentralBody body;
+    body.mass = parameters[0];
+    if (body.mass > 0) {
+        body.centre = parameters.segment<3>(1) / body.mass;
+    }
+    body.inertia = symmetric(parameters.tail<6>()) -
+                   body.mass * (body.centre.squaredNorm() * Eigen::Matrix3d::Identity() -
+                                body.centre * body.centre.transpose());
+    return body;
 }
 
 Eigen::Matrix4d pseudo_inertia(const InertialParameters& parameters) {
@@ -73,7 +78,7 @@ std::optional<std::string> inertia_fault(const InertialParameters& parameters) {
     if (!(parameters[0] > 0)) {
         return "mass " + number_text(parameters[0]) + " kg is not positive";
     }
-    const Eigen::Matrix3d moments = central_moments(parameters);
+    const Eigen::Matrix3d moments = trace_minus(central_body(parameters).inertia, 0.5);
     const Eigen::Vector3d principal =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly).eigenvalues();
     const double tolerance = rounding * pseudo_inertia(parameters).topLeftCorner<3, 3>().trace();

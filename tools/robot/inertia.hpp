@@ -15,6 +15,16 @@ using InertialParameters = Eigen::Matrix<double, 10, 1>;
 InertialParameters body_parameters(double mass, const Eigen::Vector3d& centre,
                                    const Eigen::Matrix3d& inertia_about_centre);
 
+/// A body by mass (kg), centre of mass (m) and inertia about it (kg·m²), in its link's frame.
+struct CentralBody {
+    double mass = 0;
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+};
+
+/// Returns the body of these parameters. Its centre is the link's origin if it has no mass.
+CentralBody central_body(const InertialParameters& parameters);
+
 /// Returns the second moments of the mass distribution, as a 4x4 matrix linear in the parameters: the
 /// integral of (x, 1) (x, 1)ᵀ dm. A body can have these parameters if and only if it is positive definite
 /// (semidefinite for bodies without volume). A positive mass and the triangle inequality of the principal

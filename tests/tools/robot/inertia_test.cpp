@@ -76,6 +76,17 @@ TEST_CASE("the parameters of a body follow from mass and centre and inertia abou
     CHECK(parameters[9] == Approx(0.04 + 2 * (0.01 + 0.04)));
 }
 
+TEST_CASE("a body is taken apart into mass and centre and inertia about the centre as it was made of them") {
+    const Eigen::Vector3d centre(0.1, -0.2, 0.3);
+    Eigen::Matrix3d inertia;
+    inertia << 0.02, 0.001, -0.002, 0.001, 0.03, 0.003, -0.002, 0.003, 0.04;
+    const tools::InertialParameters parameters = tools::body_parameters(2, centre, inertia);
+    const tools::CentralBody body = tools::central_body(parameters);
+    CHECK(body.mass == 2);
+    CHECK((body.centre - centre).norm() < 1e-15);
+    CHECK((body.inertia - inertia).norm() < 1e-15);
+}
+
 TEST_CASE("physically impossible parameters are detected in any frame") {
     const auto fault = [](double mass, double xx, double yy, double zz) {
         const Eigen::Matrix3d inertia = Eigen::Vector3d(xx, yy, zz).asDiagonal();

@@ -12,19 +12,6 @@ const std::vector<RobotFormat>& robot_formats() {
     return formats;
 }
 
-CentralBody central_body(const InertialParameters& parameters) {
-    CentralBody body;
-    body.mass = parameters[0];
-    if (body.mass > 0) {
-        body.centre = parameters.segment<3>(1) / body.mass;
-    }
-    body.inertia << parameters[4], parameters[5], parameters[6], parameters[5], parameters[7], parameters[8],
-        parameters[6], parameters[8], parameters[9];
-    body.inertia -= body.mass * (body.centre.squaredNorm() * Eigen::Matrix3d::Identity() -
-                                 body.centre * body.centre.transpose());
-    return body;
-}
-
 std::string spaced(const Eigen::VectorXd& values) {
     std::string text;
     for (const double value : values) {

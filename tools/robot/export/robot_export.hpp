@@ -42,16 +42,6 @@ std::string robot_json_text(const RobotExport& exported);
 /// Returns all formats.
 const std::vector<RobotFormat>& robot_formats();
 
-/// A body by mass (kg), centre of mass (m) and inertia about it (kg·m²), in its link's frame.
-struct CentralBody {
-    double mass = 0;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-};
-
-/// Returns the body of these parameters. Its centre is the link's origin if it has no mass.
-CentralBody central_body(const InertialParameters& parameters);
-
 /// Returns numbers as text with a space between them. Each reads back as the same number.
 std::string spaced(const Eigen::VectorXd& values);
 

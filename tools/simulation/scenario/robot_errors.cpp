@@ -11,14 +11,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// The inertia about the body's centre of mass.
-Eigen::Matrix3d central_inertia(const InertialParameters& body, const Eigen::Vector3d& centre) {
-    Eigen::Matrix3d inertia;
-    inertia << body[4], body[5], body[6], body[5], body[7], body[8], body[6], body[8], body[9];
-    return inertia -
-           body[0] * (centre.squaredNorm() * Eigen::Matrix3d::Identity() - centre * centre.transpose());
-}
-
 void apply(const LinkError& error, InertialParameters& body, double share) {
     const double mass = body[0] + share * error.delta_mass;
     if (body[0] == 0 && share * error.delta_mass == 0) {
@@ -28,9 +20,9 @@ void apply(const LinkError& error, InertialParameters& body, double share) {
         throw InputError("link " + std::to_string(error.joint + 1) +
                          ": expected a mass that stays positive, found " + number_text(mass) + " kg");
     }
-    const Eigen::Vector3d centre = body.segment<3>(1) / body[0];
+    const CentralBody described = central_body(body);
     const Eigen::Matrix3d spread = share * error.delta_inertia.asDiagonal();
-    body = body_parameters(mass, centre + error.delta_centre, central_inertia(body, centre) + spread);
+    body = body_parameters(mass, described.centre + error.delta_centre, described.inertia + spread);
     const std::optional<std::string> fault = inertia_fault(body);
     if (fault && !spread.isZero(0)) {
         throw InputError("link " + std::to_string(error.joint + 1) +
