@@ -38,4 +38,3 @@ sed -nE 's/^[0-9]+: (cortex-m[0-9a-z-]+: )/\1/p' "$scratch"/*.txt | awk '
     sed -n '/^<!-- cortex-m: end/,$p' "$page"
 } >"$scratch/page"
 cp "$scratch/page" "$page"
-grep -h 'control loop: ' "$scratch"/*.txt | sed -E 's/^[0-9]+: //'

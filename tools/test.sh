@@ -97,7 +97,7 @@ esac
 
 # The lines of a log that belong on the terminal.
 highlights() {
-    grep -hE '^[0-9]+% tests passed|cortex-m[0-9a-z-]+: (dfdyn_c|instr|bench|control)|the target, |realtime: |not installed:' "$1" | sed -E 's/^([0-9]+: )+//; s/^/        /' || return 0
+    grep -hE '^[0-9]+% tests passed|cortex-m[0-9a-z-]+: (dfdyn_c|instr|bench)|the target, |realtime: |not installed:' "$1" | sed -E 's/^([0-9]+: )+//; s/^/        /' || return 0
 }
 
 # run_step NUMBER FUNCTION TITLE

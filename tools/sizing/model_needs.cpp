@@ -64,6 +64,13 @@ std::int64_t learned_bytes(const TrainedModel& model) {
            Learner::state_bytes(parameters, 1);
 }
 
+/// Number of columns of the regressions that a sample updates: that of the physics once for each output.
+std::int64_t learned_columns(const TrainedModel& model) {
+    const bool learned = model.physics && model.physics->prior_variance > 0;
+    return 2 * std::int64_t{model.features.count} +
+           (learned ? std::ssize(model.outputs.names) * std::ssize(model.physics->selected) : 0);
+}
+
 /// Number of values of a tick in addition to the learned ones: inputs, features, rows of the physics.
 std::int64_t work_numbers(const TrainedModel& model) {
     const auto outputs = static_cast<std::int64_t>(model.outputs.names.size());
@@ -95,6 +102,7 @@ ModelNeeds needs_of(const TrainedModel& model) {
     needs.predict_operations = cost.predict;
     needs.variance_operations = cost.variance;
     needs.learn_operations = cost.learn;
+    needs.learned_columns = learned_columns(model);
     needs.forget_operations = model.forgetting_factor < 1 ? cost.forget : 0;
     needs.tick_operations = cost.predict + needs.learn_operations + needs.forget_operations;
     return needs;

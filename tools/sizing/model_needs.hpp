@@ -19,6 +19,7 @@ struct ModelNeeds {
     std::int64_t stack_bytes = 0;        ///< of ram_bytes: the stack of a tick
     std::int64_t predict_operations = 0; ///< of tick_operations: the prediction
     std::int64_t learn_operations = 0;   ///< of tick_operations: learning
+    std::int64_t learned_columns = 0;    ///< of the regressions that a sample updates
     std::int64_t forget_operations = 0;  ///< of tick_operations: forgetting, at most
     /// of the standard deviation, in addition in a tick that does not learn or that contradicts the model
     std::int64_t variance_operations = 0;

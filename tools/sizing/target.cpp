@@ -37,6 +37,13 @@ std::int64_t extrapolation(const TrainedModel& model) {
     return model.extrapolation ? per_output * static_cast<std::int64_t>(model.outputs.names.size()) : 0;
 }
 
+/// Returns the instructions of learning that grow with the number of columns only: scalars of each column,
+/// which the cost model does not count. The least that suffices for the models of the table, and 5 % more.
+std::int64_t of_columns(const ModelNeeds& needs) {
+    constexpr std::int64_t per_column = 36;
+    return per_column * needs.learned_columns;
+}
+
 void print_smaller(std::ostream& out, const TrainedModel& model) {
     const SizeRecord* const own = own_record(model);
     const std::vector<SizeRecord> smaller = smaller_models(model);
@@ -88,7 +95,7 @@ TickInstructions instructions_of(const TrainedModel& model, const Target& target
     };
     const std::int64_t predict = count(target.predict, needs.predict_operations) + extrapolation(model);
     const std::int64_t variance = count(target.variance, needs.variance_operations);
-    const std::int64_t learn = count(target.learn, needs.learn_operations);
+    const std::int64_t learn = count(target.learn, needs.learn_operations) + of_columns(needs);
     const std::int64_t forget = count(target.learn, needs.forget_operations);
     return {predict + variance, predict + learn, predict + variance + learn + forget};
 }

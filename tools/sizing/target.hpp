@@ -13,8 +13,8 @@
 namespace dfdyn::tools {
 
 /// A processor core, with the instructions that it needs per multiply-add of the cost model: least squares
-/// over the models of docs/reference/performance.md, whose instructions were counted, and 8 % more, so that
-/// no model of that table needs more.
+/// over the models of docs/reference/performance.md, whose instructions were counted, and 8 % more. Learning
+/// needs others per column (`instructions_of`), so that no model of that table needs more.
 struct Target {
     std::string name;
     double predict = 0;  ///< of a prediction
