@@ -92,8 +92,8 @@ TEST_CASE("a folder of the program or of the tests has at most a dozen chapters,
     const std::set<std::filesystem::path> catalogues{"tools/can/families",      "tools/commands",
                                                      "tools/diagnosis/effects", "tools/simulation/faults",
                                                      "tests/hal/device",        "tests/hal/families"};
-    const std::set<std::filesystem::path> too_many{"tests/hal/campaign", "tests/hal/gate"}; // may only shrink
-    std::map<std::filesystem::path, std::set<std::string>> chapters; // a header and its source are one
+    const std::set<std::filesystem::path> too_many{"tests/hal/campaign"}; // may only shrink
+    std::map<std::filesystem::path, std::set<std::string>> chapters;      // a header and its source are one
     for (const char* const part : {"tools", "tests"}) {
         for (const auto& entry : std::filesystem::recursive_directory_iterator(project / part)) {
             if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp") {

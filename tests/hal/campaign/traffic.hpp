@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/frame.hpp"
-#include "dfdyn/hal/gate/motion_line.hpp"
+#include "dfdyn/hal/motion/motion_line.hpp"
 #include "tests/hal/campaign/truth.hpp"
 #include "tests/hal/support/wire.hpp"
 

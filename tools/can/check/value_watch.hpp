@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/device/decoded.hpp"
-#include "dfdyn/hal/gate/motion_line.hpp"
+#include "dfdyn/hal/motion/motion_line.hpp"
 #include "tools/can/check/position_jumps.hpp"
 
 #include <cstdint>

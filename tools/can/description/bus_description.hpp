@@ -2,9 +2,9 @@
 #pragma once
 
 #include "dfdyn/hal/assembly/joint_count.hpp"
-#include "dfdyn/hal/gate/motion.hpp"
 #include "dfdyn/hal/gate/pairing.hpp"
 #include "dfdyn/hal/gate/range.hpp"
+#include "dfdyn/hal/motion/motion.hpp"
 #include "tools/base/recording/recording.hpp"
 #include "tools/can/description/any_device.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/clock/clock.hpp"
+#include "dfdyn/hal/clock/clock_witness.hpp"
 #include "dfdyn/hal/gate/bus_health.hpp"
-#include "dfdyn/hal/gate/clock.hpp"
-#include "dfdyn/hal/gate/clock_witness.hpp"
 #include "dfdyn/hal/gate/unexpected_frames.hpp"
 
 namespace dfdyn::hal {

@@ -3,7 +3,7 @@
 
 #include "dfdyn/hal/assembly/joint_count.hpp"
 #include "dfdyn/hal/assembly/position_track.hpp"
-#include "dfdyn/hal/gate/clock_step.hpp"
+#include "dfdyn/hal/clock/clock_step.hpp"
 
 #include <algorithm>
 #include <cstddef>

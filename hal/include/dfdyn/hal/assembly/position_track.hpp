@@ -3,8 +3,8 @@
 
 #include "dfdyn/hal/assembly/track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
-#include "dfdyn/hal/gate/motion.hpp"
 #include "dfdyn/hal/gate/send_rate.hpp"
+#include "dfdyn/hal/motion/motion.hpp"
 
 namespace dfdyn::hal {
 

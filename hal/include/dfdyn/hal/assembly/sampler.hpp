@@ -3,7 +3,7 @@
 
 #include "dfdyn/hal/bits.hpp"
 #include "dfdyn/hal/bus.hpp"
-#include "dfdyn/hal/gate/clock_witness.hpp"
+#include "dfdyn/hal/clock/clock_witness.hpp"
 #include "dfdyn/hal/log_clock.hpp"
 
 #include <algorithm>

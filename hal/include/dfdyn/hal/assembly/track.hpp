@@ -5,7 +5,7 @@
 #include "dfdyn/hal/gate/gap.hpp"
 #include "dfdyn/hal/gate/range.hpp"
 #include "dfdyn/hal/gate/staleness.hpp"
-#include "dfdyn/hal/gate/startup.hpp"
+#include "dfdyn/hal/motion/startup.hpp"
 
 namespace dfdyn::hal {
 

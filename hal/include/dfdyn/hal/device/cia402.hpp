@@ -2,9 +2,9 @@
 #pragma once
 
 #include "dfdyn/hal/bits.hpp"
+#include "dfdyn/hal/clock/sync_step.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/device/heartbeat.hpp"
-#include "dfdyn/hal/gate/sync_step.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Readings that the limits of a joint allow, and that are not to be believed all the same.
-#include "dfdyn/hal/gate/motion.hpp"
+#include "dfdyn/hal/motion/motion.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 

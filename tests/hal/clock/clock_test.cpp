@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/hal/gate/clock.hpp"
+#include "dfdyn/hal/clock/clock.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/hal/gate/clock_step.hpp"
+#include "dfdyn/hal/clock/clock_step.hpp"
 #include "tests/support/catch.hpp"
 
 namespace clock_step_test {

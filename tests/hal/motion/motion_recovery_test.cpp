@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joints that are trusted again after a fault has passed, and those that are not.
-#include "tests/hal/gate/watched_joint.hpp"
+#include "tests/hal/motion/watched_joint.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/gate/run_comparison.hpp"
+#include "dfdyn/hal/motion/run_comparison.hpp"
 
 #include <cstdint>
 

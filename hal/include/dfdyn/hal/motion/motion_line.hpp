@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/gate/encoder_reading.hpp"
+#include "dfdyn/hal/motion/encoder_reading.hpp"
 
 #include <algorithm>
 #include <array>

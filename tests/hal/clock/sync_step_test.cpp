@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/hal/gate/sync_step.hpp"
+#include "dfdyn/hal/clock/sync_step.hpp"
 #include "tests/support/catch.hpp"
 
 namespace sync_step_test {

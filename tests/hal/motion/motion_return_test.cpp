@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Good joints that must not stay refused, and the encoders beside them that must.
-#include "tests/hal/gate/watched_joint.hpp"
+#include "tests/hal/motion/watched_joint.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Encoders that count from where they were switched on, while another fault hides that.
-#include "dfdyn/hal/gate/motion.hpp"
+#include "dfdyn/hal/motion/motion.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>

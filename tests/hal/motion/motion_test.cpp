@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/hal/gate/motion.hpp"
+#include "dfdyn/hal/motion/motion.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/gate/away_watch.hpp"
-#include "dfdyn/hal/gate/candidate_run.hpp"
 #include "dfdyn/hal/gate/range.hpp"
-#include "dfdyn/hal/gate/startup.hpp"
-#include "dfdyn/hal/gate/unfit_readings.hpp"
-#include "dfdyn/hal/gate/zero_watch.hpp"
+#include "dfdyn/hal/motion/away_watch.hpp"
+#include "dfdyn/hal/motion/candidate_run.hpp"
+#include "dfdyn/hal/motion/startup.hpp"
+#include "dfdyn/hal/motion/unfit_readings.hpp"
+#include "dfdyn/hal/motion/zero_watch.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/gate/motion_run.hpp"
+#include "dfdyn/hal/motion/motion_run.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/gate/motion.hpp"
+#include "dfdyn/hal/motion/motion.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/hal/gate/startup.hpp"
+#include "dfdyn/hal/motion/startup.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/gate/motion_line.hpp"
+#include "dfdyn/hal/motion/motion_line.hpp"
 
 #include <algorithm>
 #include <cstdint>
