@@ -54,21 +54,25 @@ std::int64_t window_bytes(const InputModel& input, int joints) {
                   : 0;
 }
 
+/// Number of the physics' parameters that are learned.
+int learned_parameters(const TrainedModel& model) {
+    const bool learned = model.physics && model.physics->prior_variance > 0;
+    return learned ? static_cast<int>(model.physics->selected.size()) : 0;
+}
+
 /// Size of the learners' factors and weights; SPK's outputs have weights for each parameter.
 std::int64_t learned_bytes(const TrainedModel& model) {
     using Learner = UdCovariance<float, dynamic, dynamic>;
     const auto outputs = static_cast<int>(model.outputs.names.size());
-    const bool learned = model.physics && model.physics->prior_variance > 0;
-    const int parameters = learned ? static_cast<int>(model.physics->selected.size()) : 0;
+    const int parameters = learned_parameters(model);
     return Learner::state_bytes(2 * model.features.count, outputs * (1 + parameters)) +
            Learner::state_bytes(parameters, 1);
 }
 
 /// Number of columns of the regressions that a sample updates: that of the physics once for each output.
 std::int64_t learned_columns(const TrainedModel& model) {
-    const bool learned = model.physics && model.physics->prior_variance > 0;
     return 2 * std::int64_t{model.features.count} +
-           (learned ? std::ssize(model.outputs.names) * std::ssize(model.physics->selected) : 0);
+           std::ssize(model.outputs.names) * learned_parameters(model);
 }
 
 /// Number of values of a tick in addition to the learned ones: inputs, features, rows of the physics.

@@ -7,6 +7,8 @@
 
 namespace motion_recovery_test {
 
+using namespace watched_joint;
+
 TEST_CASE("readings that were trusted for a short time only do not outweigh those before") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);

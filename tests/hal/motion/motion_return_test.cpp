@@ -5,7 +5,9 @@
 
 #include <cmath>
 
-namespace motion_recovery_test {
+namespace motion_return_test {
+
+using namespace watched_joint;
 
 TEST_CASE("zeros of unknown time do not lose a joint whose motion goes on") {
     Watched joint;
@@ -127,4 +129,4 @@ TEST_CASE(
     CHECK(trusted > 200);
 }
 
-} // namespace motion_recovery_test
+} // namespace motion_return_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace motion_recovery_test {
+namespace watched_joint {
 
 using dfdyn::hal::EncoderReading;
 using dfdyn::hal::MotionGate;
@@ -45,4 +45,4 @@ struct Watched {
     }
 };
 
-} // namespace motion_recovery_test
+} // namespace watched_joint

@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/check/stream_clock.hpp"
 
+#include "dfdyn/hal/bits.hpp"
+
 #include <algorithm>
 #include <cstdlib>
 
 namespace dfdyn::tools {
 
-namespace {
-
-/// Sum modulo 2^64, because time stamps are arbitrary and must not overflow.
-std::int64_t sum(std::int64_t a, std::int64_t b) {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
-}
-
-std::int64_t difference(std::int64_t a, std::int64_t b) {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
-}
-
-} // namespace
+using hal::wrapping_difference;
+using hal::wrapping_sum;
 
 std::span<const StreamClock::Timed> StreamClock::take(const hal::Frame& frame) {
     ready_.clear();
-    const std::int64_t step_ns = difference(sum(frame.stamp_ns, offset_ns_), latest_ns_);
+    const std::int64_t step_ns = wrapping_difference(wrapping_sum(frame.stamp_ns, offset_ns_), latest_ns_);
     const std::int64_t mean_ns =
         frames_ > 1 ? (latest_ns_ - first_ns_) / static_cast<std::int64_t>(frames_ - 1) : 0;
     const std::int64_t usual_ns = frames_ > 1 ? std::max(overtaken_ns, 20 * mean_ns) : least_step_ns;
@@ -51,14 +43,14 @@ std::span<const StreamClock::Timed> StreamClock::finish() {
 }
 
 std::int64_t StreamClock::time_of(std::int64_t stamp_ns) const noexcept {
-    const std::int64_t time_ns = sum(stamp_ns, offset_ns_);
+    const std::int64_t time_ns = wrapping_sum(stamp_ns, offset_ns_);
     return frames_ == 0 ? time_ns : std::max(time_ns, latest_ns_);
 }
 
 /// Returns true if the frame waits, or came after a silence and was followed with those that waited.
 bool StreamClock::hold_ahead(const hal::Frame& frame, std::int64_t step_ns, std::int64_t usual_ns) {
     const bool goes_on =
-        !ahead_.empty() && difference(frame.stamp_ns, ahead_.back().stamp_ns) >= -overtaken_ns;
+        !ahead_.empty() && wrapping_difference(frame.stamp_ns, ahead_.back().stamp_ns) >= -overtaken_ns;
     if (!goes_on) { // those that wait were not of a silence
         for (const hal::Frame& stray : ahead_) {
             ready_.push_back({stray, true});
@@ -84,12 +76,12 @@ void StreamClock::follow_ahead() {
 }
 
 bool StreamClock::goes_on(std::int64_t stamp_ns) const noexcept {
-    const std::int64_t step_ns = difference(stamp_ns, waiting_.back().stamp_ns);
+    const std::int64_t step_ns = wrapping_difference(stamp_ns, waiting_.back().stamp_ns);
     return step_ns >= -overtaken_ns && step_ns <= least_step_ns;
 }
 
 void StreamClock::follow(hal::Frame frame) {
-    frame.stamp_ns = sum(frame.stamp_ns, offset_ns_);
+    frame.stamp_ns = wrapping_sum(frame.stamp_ns, offset_ns_);
     first_ns_ = frames_ == 0 ? frame.stamp_ns : first_ns_;
     latest_ns_ = frames_ == 0 ? frame.stamp_ns : std::max(latest_ns_, frame.stamp_ns);
     ++frames_;
@@ -99,11 +91,12 @@ void StreamClock::follow(hal::Frame frame) {
 /// Adopts the new clock. Its first frame is placed one mean interval after the last frame of the old clock.
 void StreamClock::adopt() {
     follow_ahead();
-    const std::int64_t old_ns = sum(waiting_.front().stamp_ns, offset_ns_);
-    const std::int64_t mean_ns = difference(waiting_.back().stamp_ns, waiting_.front().stamp_ns) /
+    const std::int64_t old_ns = wrapping_sum(waiting_.front().stamp_ns, offset_ns_);
+    const std::int64_t mean_ns = wrapping_difference(waiting_.back().stamp_ns, waiting_.front().stamp_ns) /
                                  static_cast<std::int64_t>(waiting_.size() - 1);
-    const std::int64_t step_ns = difference(old_ns, latest_ns_);
-    offset_ns_ = difference(latest_ns_ + std::max<std::int64_t>(mean_ns, 0), waiting_.front().stamp_ns);
+    const std::int64_t step_ns = wrapping_difference(old_ns, latest_ns_);
+    offset_ns_ =
+        wrapping_difference(latest_ns_ + std::max<std::int64_t>(mean_ns, 0), waiting_.front().stamp_ns);
     ++steps_;
     largest_step_ns_ = std::abs(step_ns) > std::abs(largest_step_ns_) ? step_ns : largest_step_ns_;
     for (const hal::Frame& frame : waiting_) {

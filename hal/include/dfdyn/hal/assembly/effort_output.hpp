@@ -21,7 +21,7 @@ class EffortOutput {
     struct Config {
         TrackConfig track;
         PerJoint<Range, n> range;
-        int frozen_limit = 100; ///< equal values of a moving joint, see FrozenEffortGate
+        int frozen_limit = 100; ///< periods with the same value in motion, see FrozenEffortGate
         Extent<n> joints{};
     };
 

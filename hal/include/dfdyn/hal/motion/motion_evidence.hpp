@@ -297,6 +297,7 @@ class MotionEvidence {
         return zero_.explains(first, begin, trusted_.end_line(0, config_.period_ns).velocity,
                               hidden ? clock_s : 0);
     }
+
     /// The same, of the first two readings of a run: one may be late.
     [[nodiscard]] constexpr bool begins_at_zero(const MotionRun& run) const noexcept {
         return begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) ||
