@@ -9,18 +9,17 @@
 
 namespace dfdyn::hal {
 
-/// Follows the readings of a joint, whatever they are worth and even where their time is known to a period
-/// only. Knows whether they have jumped away from the trusted ones, several times further than the joint can
-/// have moved, and not back. Positions that go on from there are not the joint's, although its limits may
-/// allow them after a while. O(1).
+/// Detects that an encoder has jumped at least five times further than the joint can move, and has not jumped
+/// back. Later positions along that motion are not the joint's, even if its limits allow them after a while.
+/// Uses all readings, including those whose time is known only to within one period. O(1).
 class AwayWatch {
   public:
-    /// `max_age_ns`: how far apart consecutive readings may be.
+    /// `max_age_ns`: largest interval between consecutive readings.
     constexpr AwayWatch(const MotionTolerance& tolerance, std::int64_t max_age_ns) noexcept
         : tolerance_(tolerance), max_age_ns_(max_age_ns) {}
 
-    /// Takes the next reading. A jump much smaller than the one before does not take that back; after a
-    /// larger one nobody knows.
+    /// Takes the next reading. A further jump below a fifth of the offset changes the offset. A larger jump
+    /// ends the detection, because the readings are then ambiguous.
     constexpr void take(const EncoderReading& reading) noexcept {
         const double apart_rad = seen_ ? reading.position_rad - seen_->position_rad : 0;
         const std::int64_t since_ns = seen_ ? reading.stamp_ns - seen_->stamp_ns : 0;
@@ -44,38 +43,39 @@ class AwayWatch {
         from_trusted_ = false;
     }
 
-    /// Takes a reading that is trusted; `established`: for so long that a jump from it leads away.
+    /// Takes a trusted reading. `established`: trusted for long enough that a jump from it counts as a jump
+    /// away.
     constexpr void trust(const EncoderReading& reading, bool established) noexcept {
         seen_ = reading;
         from_trusted_ = established;
         away_rad_ = 0;
     }
 
-    /// The device was heard, whatever it said.
+    /// Notes that the device sent a frame, valid or not.
     constexpr void hear(std::int64_t stamp_ns) noexcept { heard_ns_ = stamp_ns; }
 
-    /// The clock of the stamps was set.
+    /// Forgets all stamps, because their clock was set.
     constexpr void forget() noexcept {
         seen_.reset();
         heard_ns_.reset();
         away_rad_ = 0;
     }
 
-    /// For how long the device was silent before this reading (s).
+    /// Returns how long the device was silent before this reading (s).
     [[nodiscard]] constexpr double silent_s(std::int64_t stamp_ns) const noexcept {
         return heard_ns_ ? seconds_between(*heard_ns_, stamp_ns) : 0;
     }
 
-    /// Returns true while the readings are elsewhere.
+    /// Returns true while the readings are away from the joint.
     [[nodiscard]] constexpr bool away() const noexcept { return away_rad_ != 0; }
 
   private:
-    /// Of the largest motion against a jump, and of a jump against the one before. A jump that is less than
-    /// five times as far may be a velocity limit that is too low, or a reading that is late.
+    /// Largest ratio of the possible motion to the jump, and of a later jump to the offset. A smaller jump
+    /// may come from a velocity limit that is too low, or from a late reading.
     static constexpr double small_share = 0.2;
 
-    /// Returns true if the readings have come back without another jump, and sooner than the joint moves so
-    /// far itself at half of its velocity limit: frames were lost after a flipped bit, or a device filters.
+    /// Returns true if the readings have returned without a jump, earlier than the joint could at half of its
+    /// velocity limit. Causes: frames lost after a flipped bit, or a device that filters.
     [[nodiscard]] constexpr bool is_back(const EncoderReading& reading) const noexcept {
         const double way_rad = magnitude(away_rad_);
         const double reach = tolerance_.reach_untimed(reading.stamp_ns - left_ns_, reading.step_rad);
@@ -85,11 +85,11 @@ class AwayWatch {
     MotionTolerance tolerance_;
     std::int64_t max_age_ns_;
     std::optional<EncoderReading> seen_;
-    std::optional<std::int64_t> heard_ns_; ///< when the device sent anything
-    bool from_trusted_ = false; ///< `seen_` is trusted: an encoder that froze jumps when it is good again
-    double away_rad_ = 0;       ///< from the joint
-    double moved_rad_ = 0;      ///< since the readings are away, without jumps
-    std::int64_t left_ns_ = 0;  ///< the last reading before that
+    std::optional<std::int64_t> heard_ns_; ///< time at which the device last sent a frame
+    bool from_trusted_ = false;            ///< `seen_` is trusted; false after a frozen encoder recovered
+    double away_rad_ = 0;                  ///< offset of the readings from the joint; 0: not away
+    double moved_rad_ = 0;                 ///< motion since the jump, without further jumps
+    std::int64_t left_ns_ = 0;             ///< stamp of the last reading before the jump
 };
 
 } // namespace dfdyn::hal

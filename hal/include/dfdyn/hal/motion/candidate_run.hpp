@@ -7,14 +7,14 @@
 
 namespace dfdyn::hal {
 
-/// Collects the readings that are not trusted yet into a run in which each leads to the next. A single
-/// reading that is off does not end the run; three that lead from one to the next do. O(1).
+/// Collects untrusted readings into a run of consistent readings. One inconsistent reading does not end the
+/// run; three that are consistent with each other do. O(1).
 class CandidateRun {
   public:
-    /// What a reading is to the run.
+    /// Relation of a reading to the run.
     enum class Step : std::uint8_t { continues, begins, is_off };
 
-    /// Accepts a reading, and returns what it is to the run.
+    /// Takes a reading and returns its relation to the run.
     constexpr Step take(const EncoderReading& reading, const RunComparison& comparison,
                         const MotionTolerance& tolerance) noexcept {
         if (comparison.continues(run_, reading)) {
@@ -29,9 +29,9 @@ class CandidateRun {
             other_.extend(reading, tolerance);
             return Step::is_off;
         }
-        const EncoderReading& first = other_goes_on ? other_.first() : reading; // of the run that begins
+        const EncoderReading& first = other_goes_on ? other_.first() : reading; // of the new run
         const bool follows = !run_.empty() && comparison.near(run_.last().stamp_ns, first.stamp_ns);
-        const bool repeats = run_.first().position_rad == run_.last().position_rad; // shows nothing
+        const bool repeats = run_.first().position_rad == run_.last().position_rad; // no evidence
         const bool apart = follows && !repeats && !tolerance.reaches(run_.last(), first);
         contradicted_ = contradicted_ || (apart && run_.readings() + run_.zeros() >= min_run_readings);
         before_ = run_.empty() ? before_ : run_;
@@ -42,7 +42,7 @@ class CandidateRun {
         return Step::begins;
     }
 
-    /// Returns true if two readings or more that lead from one to the next speak against this one.
+    /// Returns true if at least two consistent readings contradict this one.
     [[nodiscard]] constexpr bool disputes(const EncoderReading& reading,
                                           const RunComparison& comparison) const noexcept {
         return run_.readings() >= 2 && !comparison.continues(run_, reading);
@@ -57,38 +57,38 @@ class CandidateRun {
         return silent(run_) && silent(other_);
     }
 
-    /// Forgets the run, but not that runs contradicted each other.
+    /// Forgets the run, but keeps the flag `contradicted`.
     constexpr void interrupt() noexcept {
         before_ = run_.empty() ? before_ : run_;
         run_ = {};
     }
 
-    /// Notes whether the device contradicts itself.
+    /// Sets the flag `contradicted` if the device contradicts itself.
     constexpr void contradict(bool contradicts) noexcept { contradicted_ = contradicted_ || contradicts; }
 
-    /// Forgets everything: the joint is trusted.
+    /// Forgets everything, because the joint is trusted.
     constexpr void clear() noexcept { *this = {}; }
 
-    /// The run so far.
+    /// Returns the current run.
     [[nodiscard]] constexpr const MotionRun& run() const noexcept { return run_; }
 
-    /// Readings that do not continue the run, but each other.
+    /// Returns the readings that are consistent with each other but not with the run.
     [[nodiscard]] constexpr const MotionRun& other() const noexcept { return other_; }
 
-    /// Returns the run before this one.
+    /// Returns the run before the current one.
     [[nodiscard]] constexpr const MotionRun& before() const noexcept { return before_; }
 
-    /// Returns true if the joint's readings changed from one run to another one without a silence.
+    /// Returns true if the readings changed from one run to another without a silence.
     [[nodiscard]] constexpr bool contradicted() const noexcept { return contradicted_; }
 
   private:
-    static constexpr int min_other_readings = 2; ///< of the other run before the one that replaces the run
-    static constexpr int min_run_readings = 2;   ///< of a run that its successor contradicts: one may be off
+    static constexpr int min_other_readings = 2; ///< of the other run, before it replaces the run
+    static constexpr int min_run_readings = 2;   ///< of a contradicted run; one may be wrong
 
-    /// Returns true if no motion leads from the run before to this one.
+    /// Returns true if no motion connects the run before with this one.
     [[nodiscard]] constexpr bool jumps(const RunComparison& comparison,
                                        const MotionTolerance& tolerance) const noexcept {
-        constexpr int min_readings = 3; // of which a motion is known
+        constexpr int min_readings = 3; // for an estimate of the motion
         constexpr double periods = 1.5;
         return tolerance.period_ns > 0 && before_.readings() >= min_readings &&
                run_.readings() >= min_readings &&
@@ -97,8 +97,8 @@ class CandidateRun {
     }
 
     MotionRun run_;
-    MotionRun before_; ///< the last run that ended
-    MotionRun other_;  ///< of the readings that do not continue the run
+    MotionRun before_; ///< last run that ended
+    MotionRun other_;  ///< readings that are not consistent with the run
     bool contradicted_ = false;
 };
 

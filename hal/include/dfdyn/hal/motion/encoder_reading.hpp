@@ -12,22 +12,22 @@ namespace dfdyn::hal {
 struct EncoderReading {
     std::int64_t stamp_ns = 0;
     double position_rad = 0;
-    double step_rad = 0;      ///< one count
-    double wrap_rad = 0;      ///< range of the device's integer, after which it starts again; 0: endless
+    double step_rad = 0;      ///< one encoder count
+    double wrap_rad = 0;      ///< range of the device's integer, after which it wraps; 0: does not wrap
     double from_zero_rad = 0; ///< distance from the position at which the device's own number is 0
-    bool zero = false;        ///< that number is exactly 0: perhaps the device has no position yet
+    bool zero = false; ///< the device's number is exactly 0, which may mean that it has no position yet
 };
 
-/// Seconds from one stamp to another.
+/// Returns the time from one stamp to another (s).
 [[nodiscard]] constexpr double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
     return 1e-9 * static_cast<double>(to_ns - from_ns);
 }
 
-/// Moves a reading of a device whose integer wraps to the turn that is nearest to `about_rad`. A reading of a
-/// device that does not wrap, or one that is not a number, stays as it is. O(1).
+/// Moves a reading of a wrapping integer to the turn nearest to `about_rad`. Does not change a reading that
+/// is not finite, or that of a device that does not wrap. O(1).
 constexpr void unwrap_near(EncoderReading& reading, double about_rad) noexcept {
     const double turn = reading.wrap_rad;
-    constexpr double most_turns = 1e15; // beyond it a double has no fraction of a turn
+    constexpr double most_turns = 1e15; // beyond it a double does not resolve a turn
     if (turn > 0 && magnitude(reading.position_rad) < most_turns * turn) {
         const double turns = (about_rad - reading.position_rad) / turn;
         reading.position_rad +=
@@ -35,7 +35,7 @@ constexpr void unwrap_near(EncoderReading& reading, double about_rad) noexcept {
     }
 }
 
-/// Whether a joint's range has room for a single turn of its encoder's integer.
+/// Returns true if the joint's range is narrower than one turn of its encoder's integer.
 [[nodiscard]] constexpr bool has_one_turn(const Range& range, double wrap_rad) noexcept {
     return range.highest - range.lowest < wrap_rad;
 }

@@ -11,42 +11,38 @@
 
 namespace dfdyn::hal {
 
-/// Believes a position only if the joint's motion leads to it from the last one that was believed.
+/// Trusts a position only if the joint can have moved to it from the last trusted position.
 ///
-/// - A reading within `max_age` of the last trusted one is compared with where the joint must be: on the line
-///   through its last readings, as far off as acceleration limit, counts and jitter allow. A value that is
-///   stale, flipped, zero, of another sender or of an earlier time is refused, and the next true one is
-///   trusted at once.
-/// - Otherwise (start, silence, jump) it takes `qualification.readings` consecutive readings that lead from
-///   one to the next. They also must connect with the last trusted position. After a jump between two
-///   readings: velocity may change at once (an impact), position may not. After a silence: no further than
-///   the limits allow. It takes twenty times as many readings where the readings contradicted each other, or
-///   where the clock was set and the joint's motion does not lead there.
-/// - A run that began at the device's zero and leaves it, where no motion led, is of an encoder that counts
-///   from where it was switched on (ZeroWatch): `position_lost` until the program starts again. Not one that
-///   takes back the jump before it: a bit was stuck.
-/// - Another run that does not connect is refused for as long as its readings lead from one to the next. A
-///   jump or a silence that leads to where the joint can be ends it, after twenty times as many readings. So
-///   do twenty times as many readings themselves where the jump was as small as the velocity limit allows in
-///   two periods, or between two readings where the period is not known. After fifty times as many readings
-///   the limits allow any position: then only a jump ends it that takes back the first one, or the program's
-///   restart.
-/// - A position that has been trusted again for a shorter time than the silence or the jump before it lasted
-///   (at most 0.4 s) may be the wrong one. A run is as good that connects with what was trusted before and
-///   begins with a jump that takes back most of the way from there.
-/// - Readings that jumped away from a joint that was trusted, five times as far as it can have moved, are
-///   refused until they come back, jump further, or fall silent for so long that it can be there (AwayWatch).
-/// - A moving joint that repeats its last reading, bit for bit, where it cannot have stopped, is frozen until
-///   the readings change. So is one that returns from a silence with readings that do not change, unless it
-///   was at rest and still is where it was.
+/// - A reading at most `max_age` after the last trusted one is compared with the line through the last
+///   readings. Its tolerance covers the acceleration limit, encoder counts and jitter. A reading that is
+///   stale, corrupted, zero, late or from another sender is rejected, and the next correct one is trusted.
+/// - After a start, silence or jump, `qualification.readings` consistent readings are required, which must
+///   connect with the last trusted position. After a jump, the velocity may differ (impact) but not the
+///   position. After a silence, the motion limits apply. Twenty times as many readings are required after
+///   readings that contradict each other, or after a clock step to a position that the motion does not
+///   explain.
+/// - A run that begins at the device's zero, without a motion to there, comes from an encoder that counts
+///   from where it was switched on (ZeroWatch). It is `position_lost` until the program restarts. Exception:
+///   a run that reverses the jump before it (a stuck bit).
+/// - Any other run that does not connect is rejected while it continues. It ends with a jump or a silence to
+///   a position that the joint can have, after twenty times as many readings. If the jump was small (the
+///   velocity limit times two periods, or one interval if the period is unknown), the run itself is trusted
+///   after twenty times as many readings. After fifty times as many, a loss that began with a jump ends only
+///   with the reverse jump or a restart.
+/// - A position that has been trusted for less time than the preceding silence or jump (at most 0.4 s) is on
+///   trial. A run that connects with the earlier trusted motion and reverses most of the jump replaces it.
+/// - Readings that jump five times further than the joint can move are rejected until they return, jump
+///   further, or are silent for long enough (AwayWatch).
+/// - A moving joint that repeats its last reading exactly, although it cannot have stopped, is frozen until
+///   the readings change. So are constant readings after a silence, unless the joint was at rest there.
 ///
-/// An integer that wraps is unwrapped where a single turn can be meant. O(1).
+/// A wrapping integer is unwrapped if the turn is unambiguous. O(1).
 class MotionGate : private MotionEvidence {
   public:
-    using MotionEvidence::Config; ///< limits and times of the joint
-    using MotionEvidence::lost;   ///< whether readings are refused that do not connect
+    using MotionEvidence::Config; ///< motion limits and time limits of the joint
+    using MotionEvidence::lost;   ///< returns true while readings are rejected that do not connect
 
-    /// What a reading is worth.
+    /// Result for one reading.
     struct Verdict {
         Reason reason = Reason::ok; ///< ok: trusted
         double position_rad = 0;    ///< unwrapped
@@ -55,7 +51,7 @@ class MotionGate : private MotionEvidence {
     /// Starts without readings.
     explicit constexpr MotionGate(const Config& config) noexcept : MotionEvidence(config) {}
 
-    /// Takes a reading; stamps must increase.
+    /// Takes a reading and returns whether it is trusted. Stamps must increase.
     constexpr Verdict take(const EncoderReading& reading) noexcept {
         const bool expected = is_expected(reading);
         follow_away(reading);
@@ -72,8 +68,8 @@ class MotionGate : private MotionEvidence {
         return verdict;
     }
 
-    /// Takes a reading of unknown time. It is not compared, but it shows an encoder that counts from its own
-    /// zero, far from where the joint was, or after a silence.
+    /// Takes a reading of unknown time. It gives no position, but it may reveal an encoder that counts from
+    /// its own zero.
     constexpr void glance(EncoderReading reading) noexcept {
         unwrap_near(reading, trusted_.last().position_rad);
         candidate_.contradict(unfit_.contradict(reading));
@@ -91,10 +87,10 @@ class MotionGate : private MotionEvidence {
         unfit_.take_untimed(reading);
     }
 
-    /// The readings contradict each other: more of them are needed.
+    /// Requires more readings, because the readings contradict each other.
     constexpr void contradict() noexcept { candidate_.contradict(true); }
 
-    /// The device was not ready when it sent this reading: it must qualify again.
+    /// Takes a reading that the device marked as not ready: the device must qualify again.
     constexpr void interrupt(const EncoderReading& reading) noexcept {
         restarts_ += !trusted_.empty() && !interrupted_ ? 1U : 0U;
         interrupted_ = true;
@@ -106,7 +102,7 @@ class MotionGate : private MotionEvidence {
         zero_.take(reading, is_expected(reading));
     }
 
-    /// The time since the last trusted reading is not known any more: the clock of the stamps was set.
+    /// Forgets the time since the last trusted reading, because the clock of the stamps was set.
     constexpr void forget_time() noexcept {
         time_known_ = trusted_.empty() || disturbed_ || lost();
         established_ = {};
@@ -114,9 +110,9 @@ class MotionGate : private MotionEvidence {
         refused_time_known_ = !lost();
     }
 
-    /// Believes the readings of a lost joint, if a clock that was set by this much explains where they are:
-    /// they follow at once after the last trusted reading, by the clock as it was set. After a silence
-    /// nothing shows that. To be called only where other sources show that the clock was set.
+    /// Trusts the readings of a lost joint if a clock step of `step_ns` explains their offset, and if they
+    /// follow the last trusted reading without a silence. Requires that other sources show the same clock
+    /// step.
     constexpr void explain_by_clock(std::int64_t step_ns) noexcept {
         if (!lost()) {
             return;
@@ -132,26 +128,27 @@ class MotionGate : private MotionEvidence {
         }
     }
 
-    /// The last trusted position; 0 before the first.
+    /// Returns the last trusted position (rad); 0 before the first.
     [[nodiscard]] constexpr double position_rad() const noexcept { return trusted_.last().position_rad; }
 
-    /// Number of readings that were refused.
+    /// Returns the number of rejected readings.
     [[nodiscard]] constexpr std::uint64_t refusals() const noexcept { return refusals_; }
-    /// How often the device was not ready after it had been trusted.
+    /// Returns how many times the device was not ready after it had been trusted.
     [[nodiscard]] constexpr std::uint64_t restarts() const noexcept { return restarts_; }
-    /// Number of readings beyond the joint's range.
+    /// Returns the number of readings beyond the joint's range.
     [[nodiscard]] constexpr std::uint64_t beyond() const noexcept { return beyond_; }
 
   private:
-    /// Follows where the readings are.
+    /// Passes a reading to `away_`.
     constexpr void follow_away(EncoderReading reading) noexcept {
-        if (!trusted_.empty() && !reading.zero && unwrap(reading)) { // a zero shows no place
+        if (!trusted_.empty() && !reading.zero && unwrap(reading)) { // a zero gives no position
             away_.take(reading);
         }
         away_.hear(reading.stamp_ns);
     }
 
-    /// Gives the joint up where many readings count from the zero, whatever came in between.
+    /// Marks the joint as lost if many readings count from the zero, even if other readings came between
+    /// them.
     constexpr void lose_if_counting() noexcept {
         const MotionRun& counted = zero_.counted();
         if (!zero_lost_ && !trusted_.empty() && counted.readings() >= 2 * config_.qualification.readings &&
@@ -182,7 +179,7 @@ class MotionGate : private MotionEvidence {
         }
         if (fresh(reading.stamp_ns)) {
             if (leads_from_trusted(reading)) {
-                note(candidate_.disputes(reading, comparison_)); // either may be the wrong one
+                note(candidate_.disputes(reading, comparison_)); // either of the two may be wrong
                 candidate_.clear();
                 return trust(reading);
             }
@@ -193,8 +190,8 @@ class MotionGate : private MotionEvidence {
         return follow(reading, disturbed_ ? Reason::position_jump : Reason::qualifying);
     }
 
-    /// Returns whether a reading belongs to those that are refused, in whichever turn: tightly while they are
-    /// recent, after a silence if it can. Takes it.
+    /// Returns true if a reading, in any turn, continues the rejected ones, and takes it. The tolerance is
+    /// that of consecutive readings, or after a silence that of the motion limits.
     constexpr bool still_lost(EncoderReading reading) noexcept {
         unwrap_near(reading, refused_.last().position_rad);
         if (refused_time_known_ && comparison_.near(refused_.last().stamp_ns, reading.stamp_ns)) {
@@ -225,7 +222,7 @@ class MotionGate : private MotionEvidence {
     }
 
     constexpr Verdict take_beyond_range(const EncoderReading& reading) noexcept {
-        if (comparison_.continues(run(), reading)) { // it is no better when it comes back, or round
+        if (comparison_.continues(run(), reading)) { // rejected also when it returns or wraps
             begin_loss(run());
             refused_.extend(reading, tolerance_);
         }
@@ -243,7 +240,8 @@ class MotionGate : private MotionEvidence {
         return settled(reading);
     }
 
-    /// Where two of eight readings were off, the others prove nothing: they may be the wrong ones.
+    /// Rejects a reading if two of the last eight were inconsistent, because the others may be the wrong
+    /// ones.
     constexpr Verdict settled(const EncoderReading& reading) noexcept {
         return std::popcount(off_) < 2 ? Verdict{Reason::ok, reading.position_rad}
                                        : refuse(reading, Reason::position_jump);
@@ -262,7 +260,7 @@ class MotionGate : private MotionEvidence {
         time_known_ = true;
     }
 
-    /// Counts a reading that is not trusted yet; trusts it where it ends a run that is long enough.
+    /// Counts an untrusted reading; trusts it if it completes a run that is long enough.
     constexpr Verdict follow(const EncoderReading& reading, Reason reason) noexcept {
         const bool expected = is_expected(reading);
         const bool repeats = !run().empty() && reading.position_rad == run().last().position_rad;
@@ -307,7 +305,7 @@ class MotionGate : private MotionEvidence {
         return settled(reading);
     }
 
-    /// Refuses the run that ends with this reading, and what continues it.
+    /// Rejects the run that ends with this reading, and its continuation.
     constexpr Verdict lose(const EncoderReading& reading) noexcept {
         const bool new_here = !lost() || !connects(refused_, run());
         const bool at_zero = begins_at_zero(run()) && !reverses_jump_before(run());
@@ -317,7 +315,7 @@ class MotionGate : private MotionEvidence {
         return refuse(reading, Reason::position_lost);
     }
 
-    /// Refuses a run and the readings that continue it. A loss that has begun keeps its jump and its count.
+    /// Rejects a run and its continuation. A loss that has begun keeps its jump and its count.
     constexpr void begin_loss(const MotionRun& run) noexcept {
         if (!lost()) {
             lost_jump_rad_ = magnitude(jump_rad_) > 2 * jump_error_rad_ ? jump_rad_ : 0;
@@ -335,15 +333,15 @@ class MotionGate : private MotionEvidence {
         lost_readings_ = std::min(lost_readings_ + readings, most_lost_readings());
     }
 
-    /// Returns whether the joint is lost for so long that the limits allow any position, and the run does not
-    /// take back the jump with which that began.
+    /// Returns true if the joint was lost for so long that its limits allow any position, and the run does
+    /// not reverse the jump with which the loss began.
     [[nodiscard]] constexpr bool stays_elsewhere() const noexcept {
         return lost_readings_ == most_lost_readings() && lost_jump_rad_ != 0 &&
                !reverses_jump(lost_jump_rad_);
     }
 
-    double lost_jump_rad_ = 0; ///< with which they began; 0: with a silence
-    std::uint8_t off_ = 0;     ///< which of the last eight readings led from no other, a bit each
+    double lost_jump_rad_ = 0; ///< jump with which the loss began; 0: a silence
+    std::uint8_t off_ = 0;     ///< bit mask of the last eight readings; 1: inconsistent
     std::uint64_t refusals_ = 0, restarts_ = 0, beyond_ = 0;
 };
 

@@ -15,19 +15,19 @@
 
 namespace dfdyn::hal {
 
-/// What the readings of a joint's encoder are evidence of: the joint's position (`trusted_`), an encoder that
-/// was switched on anew and counts from its zero (`zero_`), or one that is elsewhere (`refused_`).
-/// `candidate_` is what is not decided yet. Answers for MotionGate which of them explains a run. O(1).
+/// Decides for MotionGate which state explains a run of encoder readings: the joint's motion (`trusted_`), an
+/// encoder that restarted and counts from its zero (`zero_`), or a wrong position (`refused_`). `candidate_`
+/// is undecided. O(1).
 class MotionEvidence {
   public:
-    /// Limits and times of a joint.
+    /// Motion limits and time limits of a joint.
     struct Config {
         MotionLimits limits;               ///< of the joint
         Range range{-7, 7};                ///< rad
-        std::int64_t max_age_ns = 0;       ///< for how long a reading is of use
-        std::int64_t period_ns = 0;        ///< of the readings; 0: not known
-        std::int64_t jitter_ns = 0;        ///< largest lateness of a stamp against another one
-        StartupGate::Config qualification; ///< how many readings are needed
+        std::int64_t max_age_ns = 0;       ///< largest age of a valid reading
+        std::int64_t period_ns = 0;        ///< of the readings; 0: unknown
+        std::int64_t jitter_ns = 0;        ///< largest delay of a stamp relative to another one
+        StartupGate::Config qualification; ///< number of readings required
     };
 
   protected:
@@ -39,27 +39,27 @@ class MotionEvidence {
           away_(tolerance_, config.max_age_ns + 2 * config.jitter_ns),
           unfit_(tolerance_, config.max_age_ns, config.jitter_ns) {}
 
-    static constexpr int times_when_lost = 20; ///< as many readings are needed after a contradiction
-    static constexpr std::int64_t longest_trial_ns = 400'000'000; ///< until trusted readings are established
-    static constexpr double clock_s = 0.05; ///< in which frames are left out while the clock is set
+    static constexpr int times_when_lost = 20; ///< factor on the number of readings after a contradiction
+    static constexpr std::int64_t longest_trial_ns = 400'000'000; ///< largest trial of trusted readings
+    static constexpr double clock_s = 0.05; ///< largest gap in the frames while the clock is set
 
-    /// Returns true while readings are refused that do not connect with the trusted ones.
+    /// Returns true while readings are rejected that do not connect with the trusted ones.
     [[nodiscard]] constexpr bool lost() const noexcept { return !refused_.empty(); }
 
-    /// The part of the limits that is allowed for a jump to a run: less where that begins at the encoder's
+    /// Fraction of the motion limits allowed for a jump to a run; smaller if the run begins at the encoder's
     /// zero.
     struct ShareAtZero {
         const MotionEvidence& evidence; ///< of the joint
-        const EncoderReading& first;    ///< of the run
+        const EncoderReading& first;    ///< first reading of the run
 
-        /// Returns the part of the limits.
+        /// Returns the fraction.
         [[nodiscard]] constexpr double operator()(const MotionLine& begin) const noexcept {
             return evidence.begins_at_zero(first, begin) ? 0.25 : 1.0;
         }
     };
 
-    /// Returns whether a motion that was seen shortly before, trusted or not, may lead to this reading. One
-    /// that itself began at the encoder's zero does not explain why the readings are there.
+    /// Returns true if a motion seen shortly before, trusted or not, may lead to this reading. An untrusted
+    /// motion that itself began at the encoder's zero does not count.
     [[nodiscard]] constexpr bool is_expected(const EncoderReading& reading) const noexcept {
         const auto leads = [&](const MotionRun& before, std::int64_t longest_ns) {
             return !before.empty() && reading.stamp_ns - before.last().stamp_ns <= longest_ns &&
@@ -82,8 +82,8 @@ class MotionEvidence {
                comparison_.near(trusted_.last().stamp_ns, stamp_ns);
     }
 
-    /// After a jump, the time that passes does not make the positions that it led to more likely: from here
-    /// on it allows no larger distance.
+    /// Returns the longest time (s) for which the tolerance grows. After a jump, elapsed time does not make
+    /// the new positions more likely.
     [[nodiscard]] constexpr double longest_s() const noexcept {
         return disturbed_ && config_.period_ns > 0 ? 1.5 * seconds_between(0, config_.period_ns)
                                                    : MotionRun::unlimited_s;
@@ -94,9 +94,9 @@ class MotionEvidence {
         return trusted_.leads_to(reading, tolerance_, longest_s());
     }
 
-    /// Returns whether the readings jumped by no more than the velocity limit allows in two periods (where
-    /// the period is not known: in the time between them), within a short silence at most: an impact, or a
-    /// clock that was set by a few milliseconds.
+    /// Returns true if the readings jumped at most as far as the velocity limit allows in two periods (if the
+    /// period is unknown: in the time between them), after a short silence at most. Causes: an impact, or a
+    /// clock step of a few milliseconds.
     [[nodiscard]] constexpr bool jumped_little() const noexcept {
         const EncoderReading& from = trusted_.last();
         const EncoderReading& to = refused_.first();
@@ -109,19 +109,19 @@ class MotionEvidence {
                magnitude(to.position_rad - from.position_rad) <= tolerance_.reach(dt_s, to.step_rad);
     }
 
-    /// Returns whether the readings that are refused are those of an encoder that has lost its zero, not of a
-    /// fault that passes: they began at the device's zero, or are very many.
+    /// Returns true if the rejected readings come from an encoder that has lost its zero, not from a
+    /// temporary fault: they began at the device's zero, or there are very many.
     [[nodiscard]] constexpr bool has_lost_zero() const noexcept {
         return zero_lost_ || lost_readings_ >= most_readings();
     }
 
-    /// Returns true for two stamps of a short silence.
+    /// Returns true if two stamps are separated by a short silence at most.
     [[nodiscard]] constexpr bool recently(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
         return to_ns - from_ns <= 3 * config_.max_age_ns;
     }
 
-    /// The turn that is meant, if it is clear: the range has room for one only, or the last reading is near.
-    /// The first reading is taken as it is.
+    /// Unwraps a reading. Returns true if the turn is unambiguous: the range has only one, or the last
+    /// reading is near. The first reading is not changed.
     [[nodiscard]] constexpr bool unwrap(EncoderReading& reading) const noexcept {
         if (has_one_turn(config_.range, reading.wrap_rad)) {
             unwrap_near(reading, 0.5 * (config_.range.highest + config_.range.lowest));
@@ -136,10 +136,10 @@ class MotionEvidence {
         return tolerance_.reach(dt_s, reading.step_rad) < 0.5 * reading.wrap_rad;
     }
 
-    /// The run that is not decided yet.
+    /// Returns the undecided run.
     [[nodiscard]] constexpr const MotionRun& run() const noexcept { return candidate_.run(); }
 
-    /// Returns whether a silence ends a run of an encoder that counts from its zero, too short to be judged.
+    /// Returns true if a silence ends a run that began at the encoder's zero, too short to be judged.
     [[nodiscard]] constexpr bool broke_off_at_zero(const EncoderReading& reading) const noexcept {
         constexpr int min_readings = 3;
         return !trusted_.empty() && run().readings() >= min_readings &&
@@ -147,26 +147,26 @@ class MotionEvidence {
                !comes_from_trusted(run(), expected_);
     }
 
-    /// Returns whether a run that begins with this reading may be of a frozen encoder.
+    /// Returns true if a run that begins with this reading may come from a frozen encoder.
     [[nodiscard]] constexpr bool may_be_frozen(const EncoderReading& first) const noexcept {
         const bool recent = comparison_.near(trusted_.last().stamp_ns, first.stamp_ns);
         return !trusted_.empty() && (recent || unfit_.moved() || trusted_.moves(tolerance_)) &&
                (!stood_at(first) || trusted_.repeats(first, tolerance_));
     }
 
-    /// Forgets the readings that were of no use: the motion of the joint leads past them.
+    /// Forgets the unfit readings, because the joint's motion contradicts them.
     constexpr void forget_unfit() noexcept {
         unfit_.clear();
         counts_from_zero_ = false;
     }
 
-    /// Returns whether the joint was at rest at the last trusted reading, and is still there.
+    /// Returns true if the joint was at rest at the last trusted reading and has the same position now.
     [[nodiscard]] constexpr bool stood_at(const EncoderReading& reading) const noexcept {
         return !trusted_.moves(tolerance_) &&
                magnitude(reading.position_rad - trusted_.last().position_rad) <= 2 * reading.step_rad;
     }
 
-    /// How many readings of the run are enough to trust it.
+    /// Returns the number of readings after which the run is trusted.
     [[nodiscard]] constexpr int needed_readings() const noexcept {
         const int least = config_.qualification.readings;
         if (trusted_.empty()) {
@@ -181,24 +181,24 @@ class MotionEvidence {
         return lost() || disturbed || doubtful || candidate_.contradicted() ? most_readings() : least;
     }
 
-    /// How many readings are needed after a contradiction.
+    /// Returns the number of readings required after a contradiction.
     [[nodiscard]] constexpr int most_readings() const noexcept {
         return times_when_lost * config_.qualification.readings;
     }
 
-    /// Number of refused readings after which a position within the limits is no evidence.
+    /// Number of rejected readings after which a position within the limits is no evidence.
     [[nodiscard]] constexpr int most_lost_readings() const noexcept {
         return 50 * config_.qualification.readings;
     }
 
-    /// Returns true if a reading can be reached after the clock was set, in which time frames were left out.
+    /// Returns true if a reading can be reached after a clock step, during which frames were omitted.
     [[nodiscard]] constexpr bool reaches_hidden(const EncoderReading& reading) const noexcept {
         const std::int64_t since_ns = reading.stamp_ns - trusted_.last().stamp_ns;
         return comparison_.comes_within(trusted_, reading,
                                         std::max(0.0, seconds_between(0, since_ns)) + clock_s);
     }
 
-    /// Returns true if the run goes on from the trusted readings, and is not of a restarted encoder.
+    /// Returns true if the run continues the trusted readings and is not that of a restarted encoder.
     [[nodiscard]] constexpr bool comes_from_trusted(const MotionRun& run, bool expected) const noexcept {
         const bool connected = !time_known_ || connects(trusted_, run);
         const bool from_afar = time_known_ && unfit_.lead_from_afar(trusted_.last(), run.first());
@@ -206,14 +206,14 @@ class MotionEvidence {
                (expected || !restarted_at_zero(run));
     }
 
-    /// Returns whether the readings have been trusted for as long as the silence or the jump before them
-    /// lasted (at most `longest_trial_ns`), so that earlier ones are no evidence against them.
+    /// Returns true if the readings have been trusted for as long as the preceding silence or jump (at most
+    /// `longest_trial_ns`). Then earlier readings are no evidence against them.
     [[nodiscard]] constexpr bool is_established() const noexcept {
         return established_.empty() || trusted_.last().stamp_ns >= trial_end_ns_;
     }
 
-    /// Returns whether the run goes on from readings that were trusted for longer than the last ones, which
-    /// may have been of a fault: it begins soon after them, with a jump that takes back most of their way off
+    /// Returns true if the run continues readings that were trusted for longer than the last ones, which may
+    /// be faulty. It must begin soon after the last ones, with a jump that reverses most of their offset from
     /// the line of the earlier ones.
     [[nodiscard]] constexpr bool comes_from_established(const MotionRun& run) const noexcept {
         return !is_established() && run.first().stamp_ns < trial_end_ns_ &&
@@ -222,7 +222,7 @@ class MotionEvidence {
                comparison_.reaches_after_silence(established_, run.first());
     }
 
-    /// Notes that a run is trusted from here on.
+    /// Trusts a run.
     constexpr void replace_trusted(const MotionRun& run) noexcept {
         if (is_established()) {
             established_ = trusted_;
@@ -232,7 +232,7 @@ class MotionEvidence {
         trusted_ = run;
     }
 
-    /// Notes how far the run that begins is from the readings before it; nothing after a silence.
+    /// Records the distance between the new run and the readings before it; 0 after a silence.
     constexpr void note_jump() noexcept {
         const EncoderReading& first = run().first();
         const MotionRun* before = &trusted_;
@@ -255,21 +255,21 @@ class MotionEvidence {
     /// Forgets the jumps before a trusted reading.
     constexpr void forget_jumps() noexcept { jump_rad_ = jump_before_rad_ = 0; }
 
-    /// Returns whether a run takes back the jump shortly before, as a bit does that is stuck for a while. An
-    /// encoder that restarts goes to its zero from wherever the joint is.
+    /// Returns true if a run reverses the jump shortly before it, as a temporarily stuck bit does. A
+    /// restarted encoder goes to its zero from any position of the joint.
     [[nodiscard]] constexpr bool reverses_jump_before(const MotionRun& run) const noexcept {
         const std::int64_t apart_ns = run.first().stamp_ns - jump_ns_;
         return apart_ns <= config_.max_age_ns && -apart_ns <= config_.max_age_ns &&
                run.first().stamp_ns - jump_before_ns_ <= longest_trial_ns && reverses_jump(jump_before_rad_);
     }
 
-    /// Returns whether the last jump is as large as `earlier_rad`, in the other direction.
+    /// Returns true if the last jump has the size of `earlier_rad` and the opposite direction.
     [[nodiscard]] constexpr bool reverses_jump(double earlier_rad) const noexcept {
         return magnitude(jump_rad_) > 2 * jump_error_rad_ &&
                magnitude(jump_rad_ + earlier_rad) <= 2 * jump_error_rad_;
     }
 
-    /// Returns whether a joint can have come from the end of one run to the begin of the next.
+    /// Returns true if the joint can have moved from the end of one run to the start of the next.
     [[nodiscard]] constexpr bool connects(const MotionRun& before, const MotionRun& run) const noexcept {
         const std::int64_t disturbed_ns = disturbed_ || lost() ? config_.max_age_ns : 0;
         if (comparison_.near(before.last().stamp_ns + disturbed_ns, run.first().stamp_ns)) {
@@ -278,19 +278,18 @@ class MotionEvidence {
         const double silence_s = seconds_between(before.last().stamp_ns, run.first().stamp_ns);
         return tolerance_.reaches(before.last(), run.first()) &&
                comparison_.reaches_after_silence(before, run.first()) &&
-               (silence_s <= clock_s ||
-                comparison_.can_follow(before, run)); // an impact, a clock that was set
+               (silence_s <= clock_s || comparison_.can_follow(before, run)); // an impact, a clock step
     }
 
-    /// Returns whether a run is still of the encoder whose readings are refused: a small jump, or a clock
-    /// that was set by a few milliseconds, does not bring its zero back.
+    /// Returns true if a run still comes from the encoder whose readings are rejected. A small jump, or a
+    /// clock step of a few milliseconds, does not restore its zero.
     [[nodiscard]] constexpr bool goes_on_from_refused(const MotionRun& run) const noexcept {
         const bool small_jump = comparison_.near(refused_.last().stamp_ns, run.first().stamp_ns) &&
                                 tolerance_.reaches(refused_.last(), run.first());
         return small_jump || connects(refused_, run);
     }
 
-    /// Returns whether a run begins where an encoder does that was switched on.
+    /// Returns true if a run begins where an encoder that was switched on begins.
     [[nodiscard]] constexpr bool begins_at_zero(const EncoderReading& first,
                                                 const MotionLine& begin) const noexcept {
         const bool hidden = !time_known_ && !comparison_.comes_within(trusted_, first, clock_s);
@@ -298,51 +297,51 @@ class MotionEvidence {
                               hidden ? clock_s : 0);
     }
 
-    /// The same, of the first two readings of a run: one may be late.
+    /// Tries both of the first two readings of a run, because one may be late.
     [[nodiscard]] constexpr bool begins_at_zero(const MotionRun& run) const noexcept {
         return begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) ||
                begins_at_zero(run.first(), run.begin_line(1, config_.period_ns));
     }
 
-    /// Shortest silence of a board that was switched on.
+    /// Returns the shortest silence of a board that restarts (s).
     [[nodiscard]] constexpr double fastest_boot_s() const noexcept {
         return std::max(0.01, 2 * seconds_between(0, config_.period_ns));
     }
 
-    /// Returns whether a run after a silence begins at the device's zero; a joint that stood there before may
-    /// stand there still.
+    /// Returns true if a run after a silence begins at the device's zero, unless the joint was at rest there
+    /// before.
     [[nodiscard]] constexpr bool restarted_at_zero(const MotionRun& run) const noexcept {
         const bool long_enough = !time_known_ || seconds_between(trusted_.last().stamp_ns,
                                                                  run.first().stamp_ns) >= fastest_boot_s();
         return long_enough && begins_at_zero(run) && !stood_at(run.first()) && !reverses_jump_before(run);
     }
 
-    // What MotionGate changes: NOLINTBEGIN(*-non-private-member-variables-in-classes)
+    // Changed by MotionGate: NOLINTBEGIN(*-non-private-member-variables-in-classes)
     Config config_;                   ///< of the joint
     MotionTolerance tolerance_;       ///< of readings
     RunComparison comparison_;        ///< of runs
     ZeroWatch zero_;                  ///< readings that count from the zero
     AwayWatch away_;                  ///< readings that jumped away from the joint
     MotionRun trusted_;               ///< the positions of the joint
-    MotionRun established_;           ///< trusted before them, and for longer
-    std::int64_t trial_end_ns_ = 0;   ///< from here on `trusted_` counts alone
-    std::int64_t jump_ns_ = 0;        ///< when the last run began that is not trusted
-    double jump_rad_ = 0;             ///< from the readings before it; 0: after a silence
-    double jump_before_rad_ = 0;      ///< of the run before
-    std::int64_t jump_before_ns_ = 0; ///< when that run began
+    MotionRun established_;           ///< trusted before them and for longer
+    std::int64_t trial_end_ns_ = 0;   ///< end of the trial of `trusted_`
+    std::int64_t jump_ns_ = 0;        ///< start of the last untrusted run
+    double jump_rad_ = 0;             ///< distance from the readings before it; 0: after a silence
+    double jump_before_rad_ = 0;      ///< jump of the run before
+    std::int64_t jump_before_ns_ = 0; ///< start of that run
     double jump_error_rad_ = 0;       ///< largest error of `jump_rad_`
     UnfitReadings unfit_;             ///< since the last trusted one
     bool counts_from_zero_ = false;   ///< readings of unknown time began at the zero, far from the joint
     CandidateRun candidate_;          ///< of readings that qualify
-    MotionRun refused_;               ///< does not connect; while its readings go on they are refused
-    bool expected_ = false;           ///< a run that was seen shortly before led to the begin of the run
-    bool suspected_ = false;          ///< the run may be of a frozen encoder
-    bool disturbed_ = false;          ///< a jump has come since the last trusted reading
+    MotionRun refused_;               ///< does not connect; rejected while it continues
+    bool expected_ = false;           ///< a run shortly before led to the start of the run
+    bool suspected_ = false;          ///< the run may come from a frozen encoder
+    bool disturbed_ = false;          ///< a jump has occurred since the last trusted reading
     bool interrupted_ = false;        ///< the device was not ready since the last trusted reading
-    bool time_known_ = true;          ///< since the last trusted reading
-    bool refused_time_known_ = true;  ///< since the last refused reading
-    bool zero_lost_ = false;          ///< the refused readings began at the device's zero
-    int lost_readings_ = 0;           ///< of all refused runs since the joint was lost
+    bool time_known_ = true;          ///< time since the last trusted reading is known
+    bool refused_time_known_ = true;  ///< time since the last rejected reading is known
+    bool zero_lost_ = false;          ///< the rejected readings began at the device's zero
+    int lost_readings_ = 0;           ///< in all rejected runs since the joint was lost
     // NOLINTEND(*-non-private-member-variables-in-classes)
 };
 

@@ -10,46 +10,46 @@
 
 namespace dfdyn::hal {
 
-/// What a joint can do, and how well its readings show it. The default limits are beyond those of arms; a
-/// joint's own limits find smaller faults.
+/// Motion limits of a joint. The defaults exceed those of any arm; a joint's own limits detect smaller
+/// faults.
 struct MotionLimits {
     double velocity = 10;      ///< rad/s
     double acceleration = 100; ///< rad/s²
-    double stop = 20;          ///< rad/s²; from motion to a reading that repeats for ever
+    double stop = 20;          ///< rad/s²; deceleration from a motion to constant readings
 };
 
-/// Straight line through a few readings: where a joint was, and how fast it moved.
+/// Straight line through a few readings: position and velocity of a joint.
 struct MotionLine {
-    std::int64_t begin_ns = 0; ///< stamps of the first and the last of the readings
+    std::int64_t begin_ns = 0; ///< stamps of the first and the last reading
     std::int64_t end_ns = 0;
     double end_rad = 0;  ///< position at `end_ns`
-    double velocity = 0; ///< rad/s; meaningful while `span_s` is not 0
-    double span_s = 0;   ///< from begin to end; 0: too short for a velocity
+    double velocity = 0; ///< rad/s; valid while `span_s` is not 0
+    double span_s = 0;   ///< from first to last reading; 0: too short for a velocity
 
     [[nodiscard]] constexpr double at(std::int64_t stamp_ns) const noexcept {
         return end_rad + velocity * seconds_between(end_ns, stamp_ns);
     }
 
-    /// Largest distance (rad) of the joint from this line, `dt_s` beyond one of its ends: what an
-    /// acceleration adds, the rounding of the readings to counts of `step_rad`, and their lateness of up to
+    /// Returns the largest distance (rad) of the joint from this line, `dt_s` after its end or before its
+    /// start. Covers the acceleration limit, the rounding to counts of `step_rad`, and delays of stamps up to
     /// `jitter_s`. Requires a velocity.
     [[nodiscard]] constexpr double error(double dt_s, double acceleration, double step_rad,
                                          double jitter_s) const noexcept {
         const double bend = dt_s * dt_s + dt_s * span_s + span_s * span_s / 6; // of the least-squares line
         const double fastest = magnitude(velocity) + acceleration * (dt_s + span_s);
-        // rounded by half a count each, four and five readings are off by 1.2 counts at most at their end
+        // rounding by half a count: error of a line through 4 or 5 readings at its end, at most 1.2 counts
         const double rounding = 1.2 * (1 + dt_s / span_s);
         const double lateness = fastest * jitter_s * (1 + 0.5 * dt_s / span_s);
         return 0.5 * acceleration * bend + rounding * step_rad + lateness;
     }
 };
 
-/// Keeps the first or the last few readings of a run, and fits a line to them by least squares. O(1).
+/// Keeps the first or the last five readings of a run, and fits a line by least squares. O(1).
 class ReadingWindow {
   public:
     static constexpr int size = 5;
 
-    /// Takes a reading while there is room: keeps the first ones.
+    /// Adds a reading while there is room: keeps the first ones.
     constexpr void add_first(const EncoderReading& reading) noexcept {
         if (count_ < size) {
             point_[static_cast<std::size_t>(count_)] = {reading.stamp_ns, reading.position_rad};
@@ -57,7 +57,7 @@ class ReadingWindow {
         }
     }
 
-    /// Takes a reading in place of the oldest: keeps the last ones.
+    /// Replaces the oldest reading: keeps the last ones.
     constexpr void add_last(const EncoderReading& reading) noexcept {
         if (count_ == size) {
             std::copy(point_.begin() + 1, point_.end(), point_.begin());
@@ -66,8 +66,8 @@ class ReadingWindow {
         add_first(reading);
     }
 
-    /// The line through all but the first `skip_first` and the last `skip_last` readings. Readings over less
-    /// than half of `period_ns` give no velocity; none at all, a line without a span.
+    /// Returns the line through all but the first `skip_first` and the last `skip_last` readings. If they
+    /// span less than half of `period_ns`, it has no velocity. Without readings, it is an empty line.
     [[nodiscard]] constexpr MotionLine line(int skip_first, int skip_last,
                                             std::int64_t period_ns) const noexcept {
         const int from = skip_first;

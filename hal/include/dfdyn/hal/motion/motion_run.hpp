@@ -8,18 +8,19 @@
 
 namespace dfdyn::hal {
 
-/// By what readings of one joint are compared.
+/// Tolerances for the comparison of a joint's readings.
 struct MotionTolerance {
     MotionLimits limits;
-    std::int64_t period_ns = 0; ///< of the readings; 0: not known
-    double jitter_s = 0;        ///< largest lateness of a stamp against another one
+    std::int64_t period_ns = 0; ///< of the readings; 0: unknown
+    double jitter_s = 0;        ///< largest delay of a stamp relative to another one
 
-    /// Largest distance of two positions of one joint that were measured `dt_s` apart.
+    /// Returns the largest distance (rad) between two positions measured `dt_s` apart.
     [[nodiscard]] constexpr double reach(double dt_s, double step_rad) const noexcept {
         return limits.velocity * (dt_s + jitter_s) + 2 * step_rad;
     }
 
-    /// How far the joint can move between two readings, `since_ns` apart, whose time is known to a period.
+    /// Returns the largest distance (rad) between two readings `since_ns` apart, each stamped to within a
+    /// period.
     [[nodiscard]] constexpr double reach_untimed(std::int64_t since_ns, double step_rad) const noexcept {
         return reach(seconds_between(0, std::max<std::int64_t>(since_ns, 0) + period_ns), step_rad);
     }
@@ -30,14 +31,14 @@ struct MotionTolerance {
         return distance <= reach(seconds_between(from.stamp_ns, to.stamp_ns), to.step_rad);
     }
 
-    /// Largest distance of a reading from the line through those before it.
+    /// Returns the largest distance (rad) of a reading from the line through those before it.
     [[nodiscard]] constexpr double error(const MotionLine& line, double dt_s,
                                          double step_rad) const noexcept {
         return line.error(dt_s, limits.acceleration, step_rad, jitter_s);
     }
 
-    /// Whether a joint with the motion of this line cannot have stopped so that it repeats a reading after
-    /// `dt_s`.
+    /// Returns true if a joint that moved along this line cannot have stopped within `dt_s`, so that it
+    /// cannot repeat a reading.
     [[nodiscard]] constexpr bool must_move(const MotionLine& line, double dt_s,
                                            double step_rad) const noexcept {
         if (line.span_s <= 0) {
@@ -48,12 +49,12 @@ struct MotionTolerance {
     }
 };
 
-/// Readings of one joint that lead from one to the next. Takes O(1) and keeps no more than ten of them.
+/// Consistent readings of one joint. Each call costs O(1). Keeps at most ten readings.
 class MotionRun {
   public:
     static constexpr double unlimited_s = 1e9;
 
-    /// Takes a reading as the next. Stamps must increase.
+    /// Adds the next reading. Stamps must increase.
     constexpr void extend(const EncoderReading& reading, const MotionTolerance& tolerance) noexcept {
         const bool moved = count_ == 0 || reading.position_rad != last_.position_rad;
         const bool further = count_ == 0 || reading.position_rad > highest_ || reading.position_rad < lowest_;
@@ -79,16 +80,16 @@ class MotionRun {
         readings_ = std::min(readings_ + (reading.zero ? 0 : 1), most);
     }
 
-    /// Takes a reading after a silence, during which the motion may have become another one.
+    /// Adds a reading after a silence, during which the motion may have changed.
     constexpr void resume(const EncoderReading& reading, const MotionTolerance& tolerance) noexcept {
         last_readings_ = {};
         line_ = {};
         extend(reading, tolerance);
     }
 
-    /// Whether a joint with this motion can have the reading next: as the line through its last readings has
-    /// it, and the one without the very last, which may itself be as far off as a reading can be.
-    /// `longest_s`: from here on a longer time since the last reading allows no larger distance.
+    /// Returns true if the joint can have this reading next. It must fit the line through the last readings,
+    /// and also the line without the last one, which may be off by the full tolerance. After `longest_s`
+    /// without readings the tolerance no longer grows.
     [[nodiscard]] constexpr bool leads_to(const EncoderReading& to, const MotionTolerance& tolerance,
                                           double longest_s = unlimited_s) const noexcept {
         if (!tolerance.reaches(last_, to) || repeats(to, tolerance)) {
@@ -98,7 +99,7 @@ class MotionRun {
                is_near(earlier_, to, tolerance, longest_s + seconds_between(earlier_.end_ns, line_.end_ns));
     }
 
-    /// Whether a reading repeats the last one, bit for bit, although the joint must have moved.
+    /// Returns true if a reading repeats the last one exactly although the joint must have moved.
     [[nodiscard]] constexpr bool repeats(const EncoderReading& to,
                                          const MotionTolerance& tolerance) const noexcept {
         const double dt_s = seconds_between(moved_ns_, to.stamp_ns);
@@ -106,14 +107,14 @@ class MotionRun {
                tolerance.must_move(moving_, dt_s, to.step_rad);
     }
 
-    /// Whether the joint cannot have come to rest since it was as fast as it was.
+    /// Returns true if the joint cannot have stopped since its highest velocity.
     [[nodiscard]] constexpr bool moves(const MotionTolerance& tolerance) const noexcept {
         MotionLine fastest = moving_;
         fastest.velocity = speed_;
         return tolerance.must_move(fastest, fastest.span_s, last_.step_rad);
     }
 
-    /// Lines through its first and its last readings, without the outermost `skip`.
+    /// Returns the line through its first or last readings, without the outermost `skip`.
     [[nodiscard]] constexpr MotionLine begin_line(int skip, std::int64_t period_ns) const noexcept {
         return first_readings_.line(skip, 0, period_ns);
     }
@@ -125,14 +126,14 @@ class MotionRun {
     [[nodiscard]] constexpr const EncoderReading& first() const noexcept { return first_; }
     [[nodiscard]] constexpr const EncoderReading& last() const noexcept { return last_; }
 
-    /// Whether it shows no motion yet: readings beyond all before them, or readings half of which differ from
-    /// the one before. A few flipped bits make none.
+    /// Returns true if the run shows no motion yet: fewer than ten readings beyond all before them, and fewer
+    /// than half that differ from the one before. A few flipped bits are no motion.
     [[nodiscard]] constexpr bool still() const noexcept {
         const bool changes = changes_ >= enough_changes && 2 * changes_ >= count_;
         return advances_ < enough_advances && !changes;
     }
 
-    /// Readings that were not zero, and the zeros in a row at its end; up to a million.
+    /// Return the number of readings other than zero, and of zeros at the end; at most a million.
     [[nodiscard]] constexpr int readings() const noexcept { return readings_; }
     [[nodiscard]] constexpr int zeros() const noexcept { return zeros_; }
 
@@ -152,12 +153,11 @@ class MotionRun {
     EncoderReading last_;
     ReadingWindow first_readings_;
     ReadingWindow last_readings_;
-    MotionLine line_; ///< through the last four readings
-    MotionLine
-        earlier_; ///< that line at the reading before: what one after the other is late adds up in `line_`
-    MotionLine moving_;         ///< that line at the last reading that differed from the one before
+    MotionLine line_;    ///< through the last four readings
+    MotionLine earlier_; ///< `line_` at the reading before; delays of consecutive stamps add up in `line_`
+    MotionLine moving_;  ///< `line_` at the last reading that differed from the one before
     std::int64_t moved_ns_ = 0; ///< stamp of that reading
-    double speed_ = 0;          ///< of the fastest line, less what a joint that stops loses
+    double speed_ = 0;          ///< highest velocity, reduced by the deceleration limit
     int count_ = 0;
     int readings_ = 0;
     int zeros_ = 0;

@@ -8,20 +8,20 @@
 
 namespace dfdyn::hal {
 
-/// Compares two runs of readings of one joint: whether its motion can lead from one to the other. O(1).
+/// Decides if the motion of a joint can lead from one run of readings to another. O(1).
 class RunComparison {
   public:
-    /// `max_age_ns`: how far apart consecutive readings may be; `jitter_ns`: largest lateness of a stamp.
+    /// `max_age_ns`: largest interval between consecutive readings; `jitter_ns`: largest delay of a stamp.
     constexpr RunComparison(const MotionTolerance& tolerance, std::int64_t max_age_ns,
                             std::int64_t jitter_ns) noexcept
         : tolerance_(tolerance), max_age_ns_(max_age_ns), jitter_ns_(jitter_ns) {}
 
-    /// Returns true if two readings are consecutive, with at most a few lost ones in between.
+    /// Returns true if two readings are consecutive, with at most a few lost ones between them.
     [[nodiscard]] constexpr bool near(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
         return to_ns - from_ns <= max_age_ns_ + 2 * jitter_ns_;
     }
 
-    /// Returns true if the reading is the next of the run.
+    /// Returns true if the reading is the next one of the run.
     [[nodiscard]] constexpr bool continues(const MotionRun& run, const EncoderReading& to) const noexcept {
         return !run.empty() && near(run.last().stamp_ns, to.stamp_ns) && run.leads_to(to, tolerance_);
     }
@@ -29,7 +29,7 @@ class RunComparison {
     /// Returns true if the acceleration limit allows the reading after a silence that follows the run.
     [[nodiscard]] constexpr bool reaches_after_silence(const MotionRun& before,
                                                        const EncoderReading& to) const noexcept {
-        constexpr double share_of_limits = 0.8; // no joint accelerates with all its might for so long
+        constexpr double share_of_limits = 0.8; // no joint accelerates at its limit for so long
         bool reached = false;
         for (const int skip : {0, 1}) {
             const MotionLine line = before.end_line(skip, tolerance_.period_ns);
@@ -41,9 +41,8 @@ class RunComparison {
         return reached;
     }
 
-    /// Returns true if the acceleration limit allows the motion of a run after a silence that follows another
-    /// run. From velocity v0 to v1 within T, a joint comes as far as (v0 + v1) T / 2, with an error of at
-    /// most a T² / 4.
+    /// Returns true if the acceleration limit allows a run after a silence that follows another run. From
+    /// velocity v0 to v1 within T, a joint moves (v0 + v1) T / 2, with an error of at most a T² / 4.
     [[nodiscard]] constexpr bool can_follow(const MotionRun& before, const MotionRun& run) const noexcept {
         bool can = false;
         for (const int skip : {0, 1}) {
@@ -54,7 +53,7 @@ class RunComparison {
         return can;
     }
 
-    /// Returns true if the motion of the run leads to this reading within the time `most_s`.
+    /// Returns true if the motion of the run leads to this reading within at most `most_s`.
     [[nodiscard]] constexpr bool comes_within(const MotionRun& before, const EncoderReading& to,
                                               double most_s) const noexcept {
         const MotionLine line = before.end_line(0, tolerance_.period_ns);
@@ -64,7 +63,7 @@ class RunComparison {
         return line.span_s > 0 && off >= std::min(way, 0.0) - error && off <= std::max(way, 0.0) + error;
     }
 
-    /// Returns true if a reading goes on from the run as if no time had passed: a clock that is set forward
+    /// Returns true if a reading continues the run as if no time had passed. A clock that is set forward
     /// looks like a silence.
     [[nodiscard]] constexpr bool goes_on_without_silence(const MotionRun& before,
                                                          const EncoderReading& to) const noexcept {
@@ -74,9 +73,9 @@ class RunComparison {
         return line.span_s > 0 && magnitude(off) <= tolerance_.error(line, 2 * period_s, to.step_rad);
     }
 
-    /// Returns true if a run takes back most of the way from the readings before to those that followed them
-    /// elsewhere. The motion from more than `longest_ns` before tells nothing. Meanwhile the joint moved as
-    /// the readings elsewhere, or as those of the run.
+    /// Returns true if a run reverses most of the jump from `before` to `elsewhere`. A velocity from more
+    /// than `longest_ns` before the jump is not extrapolated. Between the jumps the joint moved as
+    /// `elsewhere` or as `run`.
     [[nodiscard]] constexpr bool takes_back(const MotionRun& before, const MotionRun& elsewhere,
                                             const MotionRun& run, std::int64_t longest_ns) const noexcept {
         constexpr double most_left = 0.5;
@@ -92,9 +91,9 @@ class RunComparison {
         return std::min(magnitude(as_elsewhere_rad), magnitude(as_run_rad)) <= most_left * magnitude(off_rad);
     }
 
-    /// Returns true if the motions before and after a jump meet in between. Either may have one reading that
-    /// is off. `longest_s`: a longer time between them allows no larger distance. `share(line)`: the part of
-    /// the limits that is allowed for a run that begins with this line.
+    /// Returns true if the motions before and after a jump meet between them. Either may have one wrong
+    /// reading. After `longest_s` between them the tolerance no longer grows. `share(line)`: fraction of the
+    /// tolerance for a run that begins with this line.
     template <class Share>
     [[nodiscard]] constexpr bool meets(const MotionRun& before, const MotionRun& run, double longest_s,
                                        Share share) const noexcept {
@@ -106,7 +105,7 @@ class RunComparison {
                meets(from, to, run.first(), longest_s, share);
     }
 
-    /// Returns true if two lines meet in between; `first` is the first reading of the second.
+    /// Returns true if two lines meet between them; `first` is the first reading of the second line.
     template <class Share>
     [[nodiscard]] constexpr bool meets(const MotionLine& from, const MotionLine& to,
                                        const EncoderReading& first, double longest_s,
@@ -121,7 +120,7 @@ class RunComparison {
             0.5 * (tolerance_.error(from, dt_s, first.step_rad) + tolerance_.error(to, dt_s, first.step_rad));
         const double fastest =
             magnitude(from.velocity) + tolerance_.limits.acceleration * (dt_s + from.span_s + to.span_s);
-        if (magnitude(to.velocity) > fastest) { // an impact takes velocity, and turns it round
+        if (magnitude(to.velocity) > fastest) { // an impact reduces or reverses the velocity
             return false;
         }
         const double nearest = std::min(magnitude(before), magnitude(after));
@@ -129,7 +128,7 @@ class RunComparison {
     }
 
   private:
-    /// Returns true if a joint can come from the end of one line to the begin of the other.
+    /// Returns true if a joint can move from the end of one line to the start of the other.
     [[nodiscard]] constexpr bool can_follow(const MotionLine& from, const MotionLine& to,
                                             const EncoderReading& first) const noexcept {
         const double dt_s = seconds_between(from.end_ns, to.begin_ns);

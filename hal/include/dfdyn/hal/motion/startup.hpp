@@ -6,18 +6,18 @@
 
 namespace dfdyn::hal {
 
-/// Refuses a source until it has sent enough readings. Encoders send well-formed zeros before they have their
-/// position. So zeros do not count, unless there are very many: then the joint is at rest at zero.
+/// Rejects a source until it has sent enough readings. Encoders send well-formed zeros before they have a
+/// position. So zeros do not count, except a long run of them: then the joint is at rest at zero.
 class StartupGate {
   public:
     struct Config {
-        int readings = 10;        ///< that are not zero
-        int zero_readings = 1000; ///< in a row, which are believed
+        int readings = 10;        ///< required readings that are not zero
+        int zero_readings = 1000; ///< consecutive zeros that are trusted
     };
 
     explicit constexpr StartupGate(const Config& config) noexcept : config_(config) {}
 
-    /// Takes a reading; whether the source may be used with it. `zero`: its raw values are all 0.
+    /// Takes a reading and returns true if the source may be used. `zero`: all its raw values are 0.
     constexpr bool qualified(bool zero) noexcept {
         zeros_ = zero ? std::min(zeros_ + 1, config_.zero_readings) : 0;
         readings_ = std::min(readings_ + (zero ? 0 : 1), config_.readings);
@@ -27,7 +27,7 @@ class StartupGate {
         return readings_ == config_.readings;
     }
 
-    /// The source was silent, or not itself: it must qualify again.
+    /// Requires the source to qualify again, after a silence or a fault.
     constexpr void restart() noexcept {
         restarts_ += readings_ > 0 || zeros_ > 0 ? 1U : 0U;
         readings_ = 0;

@@ -10,16 +10,16 @@
 
 namespace dfdyn::hal {
 
-/// Readings since the last trusted one that are of no use as positions: their time is known to a period only,
-/// or the device was not ready. They still show what the encoder does. O(1).
+/// Readings since the last trusted one that give no position: their time is known only to within one period,
+/// or the device was not ready. They still show the motion of the encoder. O(1).
 class UnfitReadings {
   public:
-    /// `max_age_ns`: how far apart consecutive readings may be; `jitter_ns`: largest lateness of a stamp.
+    /// `max_age_ns`: largest interval between consecutive readings; `jitter_ns`: largest delay of a stamp.
     constexpr UnfitReadings(const MotionTolerance& tolerance, std::int64_t max_age_ns,
                             std::int64_t jitter_ns) noexcept
         : tolerance_(tolerance), max_age_ns_(max_age_ns), jitter_ns_(jitter_ns) {}
 
-    /// Takes a reading of a device that says that it is not ready.
+    /// Takes a reading that the device marked as not ready.
     constexpr void take(const EncoderReading& reading) noexcept {
         if (!leads_to_next(reading)) {
             agree_ = false;
@@ -42,34 +42,34 @@ class UnfitReadings {
         last_ = reading;
     }
 
-    /// Forgets them: the joint is trusted.
+    /// Forgets them, because the joint is trusted.
     constexpr void clear() noexcept {
         agree_ = untimed_ = false;
         last_.reset();
         moved_ = false;
     }
 
-    /// Returns the last of them; `other` if there is none.
+    /// Returns the last one; `other` if there is none.
     [[nodiscard]] constexpr const EncoderReading& last_or(const EncoderReading& other) const noexcept {
         return last_ ? *last_ : other;
     }
 
-    /// Returns whether those of unknown time differed from each other.
+    /// Returns true if the readings of unknown time differed from each other.
     [[nodiscard]] constexpr bool moved() const noexcept { return moved_; }
 
-    /// Returns whether no motion leads to this reading from the last of them, shortly before.
+    /// Returns true if no motion leads from the last one, shortly before, to this reading.
     [[nodiscard]] constexpr bool contradict(const EncoderReading& reading) const noexcept {
         return is_recent(reading, max_age_ns_ + 2 * jitter_ns_) && is_far(*last_, reading);
     }
 
-    /// Returns whether the joint can have moved to this reading from the last of them, in a short silence.
+    /// Returns true if the joint can have moved from the last one to this reading, after a short silence.
     [[nodiscard]] constexpr bool lead_to(const EncoderReading& reading) const noexcept {
         return is_recent(reading, 3 * max_age_ns_) && !is_far(*last_, reading);
     }
 
-    /// Returns whether they lead to this reading, one to the next, from two of unknown time to which the
-    /// joint cannot have moved. A single one may have a flipped bit, and a zero or a device that is not ready
-    /// shows no place.
+    /// Returns true if they lead consistently to this reading, from two readings of unknown time that the
+    /// joint cannot have reached. One reading may have a flipped bit. A zero, or a device that is not ready,
+    /// gives no position.
     [[nodiscard]] constexpr bool lead_from_afar(const EncoderReading& trusted,
                                                 const EncoderReading& reading) const noexcept {
         return agree_ && leads_to_next(reading) && std::ranges::all_of(first_, [&](const auto& first) {
@@ -78,7 +78,7 @@ class UnfitReadings {
                });
     }
 
-    /// Returns whether a joint cannot move from one reading to the other, whose time is known to a period.
+    /// Returns true if a joint cannot have moved between two readings that are stamped to within a period.
     [[nodiscard]] constexpr bool is_far(const EncoderReading& from, const EncoderReading& to) const noexcept {
         const std::int64_t since_ns = std::min(to.stamp_ns - from.stamp_ns, max_age_ns_);
         return magnitude(to.position_rad - from.position_rad) >
@@ -98,12 +98,11 @@ class UnfitReadings {
     MotionTolerance tolerance_;
     std::int64_t max_age_ns_;
     std::int64_t jitter_ns_;
-    std::array<EncoderReading, 2>
-        first_{};        ///< where they agree: of those that lead to the last, one to the next
-    bool agree_ = false; ///< two of unknown time in a row, and all since
+    std::array<EncoderReading, 2> first_{}; ///< the first two consistent ones, while `agree_`
+    bool agree_ = false; ///< two consecutive readings of unknown time, and all since, are consistent
     std::optional<EncoderReading> last_;
-    bool untimed_ = false; ///< the last one, and it is no zero
-    bool moved_ = false;   ///< those of unknown time
+    bool untimed_ = false; ///< the last one has an unknown time and is not zero
+    bool moved_ = false;   ///< those of unknown time differed
 };
 
 } // namespace dfdyn::hal

@@ -8,24 +8,23 @@
 
 namespace dfdyn::hal {
 
-/// Recognises an encoder that counts from where it was switched on: its readings begin at its own zero.
-/// Follows the run that goes on from the last reading at the zero to which the joint's motion did not lead.
-/// It takes all readings, also those that are of no use as positions. O(1).
+/// Detects an encoder that counts from where it was switched on: its readings begin at its own zero. Tracks
+/// the run that continues the last reading near the zero that the joint's motion does not explain. Uses all
+/// readings, including those that give no position. O(1).
 class ZeroWatch {
   public:
-    /// `max_age_ns`: how far apart consecutive readings may be.
+    /// `max_age_ns`: largest interval between consecutive readings.
     constexpr ZeroWatch(const MotionTolerance& tolerance, std::int64_t max_age_ns) noexcept
         : tolerance_(tolerance), max_age_ns_(max_age_ns) {}
 
-    /// Accepts a reading that is trusted.
+    /// Forgets the tracked run, because a reading was trusted.
     constexpr void forget() noexcept { counted_ = {}; }
 
-    /// Accepts a reading that is not trusted, whatever its reason. `expected`: a motion that was seen shortly
-    /// before may lead to it.
+    /// Takes an untrusted reading. `expected`: a motion seen shortly before may lead to it.
     constexpr void take(const EncoderReading& reading, bool expected) noexcept {
         const bool recent = !counted_.empty() && reading.stamp_ns - counted_.last().stamp_ns <= max_age_ns_;
         const bool repeats = reading.position_rad == counted_.first().position_rad;
-        const bool waits = recent && repeats && counted_.still(); // it is not ready yet
+        const bool waits = recent && repeats && counted_.still(); // the device is not ready yet
         const bool leads = recent && !waits && counted_.leads_to(reading, tolerance_);
         if (!leads && !waits && (!is_near_zero(reading) || expected || follows_better(reading))) {
             return;
@@ -34,9 +33,9 @@ class ZeroWatch {
         counted_.extend(reading, tolerance_);
     }
 
-    /// Returns true if a run begins at the zero, or as far from it as the joint goes in a few periods, or
-    /// goes on from readings that began there. `trusted_velocity`: of the joint when it was last trusted;
-    /// `hidden_s`: time before the run of which no reading is known.
+    /// Returns true if a run begins within a few periods of motion from the zero, or continues readings that
+    /// began there. `trusted_velocity`: velocity of the joint when it was last trusted; `hidden_s`: time
+    /// before the run without known readings.
     [[nodiscard]] constexpr bool explains(const EncoderReading& first, const MotionLine& begin,
                                           double trusted_velocity, double hidden_s) const noexcept {
         if (magnitude(first.from_zero_rad) <= travel(first, begin, trusted_velocity, hidden_s) &&
@@ -52,30 +51,30 @@ class ZeroWatch {
         return goes_on(first, begin, trusted_velocity);
     }
 
-    /// Returns true if the joint can have moved to this reading, whose time is known to a period, from
-    /// readings that began at the zero.
+    /// Returns true if the joint can have moved to this reading, stamped to within a period, from readings
+    /// that began at the zero.
     [[nodiscard]] constexpr bool lead_to_untimed(const EncoderReading& reading) const noexcept {
         const std::int64_t since_ns = reading.stamp_ns - counted_.last().stamp_ns;
-        const double apart = magnitude(reading.from_zero_rad - counted_.last().from_zero_rad); // of any turn
+        const double apart = magnitude(reading.from_zero_rad - counted_.last().from_zero_rad); // any turn
         return counted_.readings() > 0 && since_ns >= 0 &&
                since_ns <= max_age_ns_ + 2 * tolerance_.period_ns &&
                apart <= tolerance_.reach_untimed(since_ns, reading.step_rad);
     }
 
-    /// The readings that go on from one at the zero.
+    /// Returns the readings that continue one at the zero.
     [[nodiscard]] constexpr const MotionRun& counted() const noexcept { return counted_; }
 
   private:
-    static constexpr int min_counted_readings = 5; ///< that show an encoder which counts from its zero
+    static constexpr int min_counted_readings = 5; ///< of an encoder that counts from its zero
 
-    /// Returns whether a run goes on from the readings that began at the zero: it is of them, or its line
+    /// Returns true if a run continues the readings that began at the zero: it is part of them, or its line
     /// leads back to the first or the last of them.
     [[nodiscard]] constexpr bool goes_on(const EncoderReading& first, const MotionLine& begin,
                                          double trusted_velocity) const noexcept {
         const bool within = first.stamp_ns >= counted_.first().stamp_ns &&
                             first.stamp_ns <= counted_.last().stamp_ns &&
                             counted_.readings() >= min_counted_readings;
-        const bool moved = counted_.readings() > 1; // one that is off may have joined the zero
+        const bool moved = counted_.readings() > 1; // a single wrong reading may have joined the zero
         return within || leads_back(first, begin, trusted_velocity, counted_.first()) ||
                (moved && leads_back(first, begin, trusted_velocity, counted_.last()));
     }
@@ -83,7 +82,7 @@ class ZeroWatch {
                                             double trusted_velocity,
                                             const EncoderReading& to) const noexcept {
         const double since_s = seconds_between(to.stamp_ns, first.stamp_ns);
-        if (since_s <= 0 || since_s > memory_s) { // < 0: the clock was set
+        if (since_s <= 0 || since_s > memory_s) { // negative: the clock was set
             return false;
         }
         const double off = magnitude(first.from_zero_rad - to.from_zero_rad);
@@ -92,8 +91,8 @@ class ZeroWatch {
                (begin.span_s <= 0 || magnitude(back_rad) <= tolerance_.error(begin, since_s, first.step_rad));
     }
 
-    /// Returns whether a run may have been at the zero shortly before: an encoder that counts from there
-    /// moves away from it. A joint that comes to its zero was on the other side of the reading.
+    /// Returns true if a run may have been at the zero shortly before. An encoder that counts from the zero
+    /// moves away from it. A joint that crosses its zero was on the other side before.
     [[nodiscard]] constexpr bool leaves_zero(const EncoderReading& first, const MotionLine& begin,
                                              double hidden_s) const noexcept {
         const double before_s = hidden_s + periods * seconds_between(0, tolerance_.period_ns);
@@ -107,7 +106,7 @@ class ZeroWatch {
         return leaves_zero(counted_.first(), counted_.begin_line(skip, tolerance_.period_ns), hidden_s);
     }
 
-    /// Returns whether the readings that are followed began closer to the zero than this one.
+    /// Returns true if the tracked readings began closer to the zero than this one.
     [[nodiscard]] constexpr bool follows_better(const EncoderReading& reading) const noexcept {
         if (counted_.empty()) {
             return false;
@@ -117,7 +116,7 @@ class ZeroWatch {
         return since_s >= 0 && since_s <= memory_s && (closer || counted_.readings() >= min_counted_readings);
     }
 
-    /// How far from the zero a joint is after `since_s` and the time until its first reading.
+    /// Returns the distance (rad) from the zero after `since_s` and the time until the first reading.
     [[nodiscard]] constexpr double travel(const EncoderReading& first, const MotionLine& begin,
                                           double trusted_velocity, double since_s) const noexcept {
         const double fastest =
@@ -130,12 +129,12 @@ class ZeroWatch {
         return magnitude(reading.from_zero_rad) <= moved + 3 * reading.step_rad;
     }
 
-    static constexpr double periods = 1.5;   ///< until the first reading after the zero
-    static constexpr double memory_s = 0.05; // a board shows its zero at the end of its start
+    static constexpr double periods = 1.5;   ///< between the zero and the first reading after it
+    static constexpr double memory_s = 0.05; // longest time from the zero to the first positions
 
     MotionTolerance tolerance_;
     std::int64_t max_age_ns_;
-    MotionRun counted_; ///< from the zero
+    MotionRun counted_; ///< tracked run
 };
 
 } // namespace dfdyn::hal
