@@ -9,21 +9,21 @@
 
 namespace dfdyn::hal {
 
-/// Compares the stamps of one bus with the time at which they are read. It refuses a stamp ahead of that
-/// time, and one further behind the latest than frames overtake each other. After several refused stamps in a
-/// row that are consistent, their clock is adopted: its stamps are shifted so that they continue the old
-/// ones. The resulting time is never ahead, and runs backward by at most `tolerance`.
+/// Compares the stamps of one bus with the time at which they are read. Rejects a stamp ahead of that time,
+/// and one further behind the latest stamp than frames overtake each other. After several consistent rejected
+/// stamps, their clock is adopted: its stamps are shifted so that they continue the old ones. The resulting
+/// time is never ahead, and runs backward by at most `tolerance`.
 class ClockGate {
   public:
     struct Config {
-        std::int64_t tolerance_ns = 5'000'000;  ///< largest lead, and lag behind the latest stamp
-        std::int64_t max_step_ns = 100'000'000; ///< between consistent frames; and age of the first
+        std::int64_t tolerance_ns = 5'000'000;  ///< largest lead, and largest lag behind the latest stamp
+        std::int64_t max_step_ns = 100'000'000; ///< between consistent frames, and age of the first
         int adopt_after = 20;                   ///< consistent frames, at least 1
     };
 
     explicit constexpr ClockGate(const Config& config) noexcept : config_(config) {}
 
-    /// The stamp on the time base of `now_ns`, or nothing where it is not to be believed.
+    /// Returns the stamp on the time base of `now_ns`, or nothing if it is rejected.
     constexpr std::optional<std::int64_t> accept(std::int64_t stamp_ns, std::int64_t now_ns) noexcept {
         const std::int64_t shifted_ns = wrapping_sum(stamp_ns, offset_ns_);
         const bool ahead = shifted_ns > wrapping_sum(now_ns, config_.tolerance_ns);
@@ -45,11 +45,11 @@ class ClockGate {
         return follow(now_ns);
     }
 
-    /// Whether the last frame was refused.
+    /// Returns true if the last frame was rejected.
     [[nodiscard]] constexpr bool doubtful() const noexcept { return run_ > 0; }
     [[nodiscard]] constexpr std::uint64_t refused() const noexcept { return refused_; }
 
-    /// Number of times another clock was adopted.
+    /// Returns how many times another clock was adopted.
     [[nodiscard]] constexpr std::uint64_t adopted() const noexcept { return adopted_; }
 
   private:
@@ -59,7 +59,7 @@ class ClockGate {
         return stamp_ns;
     }
 
-    /// Whether this refused stamp ends a run that is long enough.
+    /// Returns true if this rejected stamp completes a run that is long enough.
     constexpr bool consistent(std::int64_t stamp_ns) noexcept {
         const std::int64_t step_ns = wrapping_difference(stamp_ns, last_refused_ns_);
         const bool goes_on = run_ > 0 && step_ns >= -config_.tolerance_ns && step_ns <= config_.max_step_ns;

@@ -9,14 +9,14 @@
 
 namespace dfdyn::hal {
 
-/// Detects a clock of stamps that was set by less than ClockGate sees. Then the interval of every source
-/// differs from its period by the same time at once; a single source that does is late, lost or another one.
+/// Detects clock steps that are too small for ClockGate. A clock step changes the interval of every source by
+/// the same time at once. If only one source changes, its frames are late, lost or from another sender.
 /// O(sources).
 template <int sources>
 class ClockStepWatch {
   public:
-    /// Takes the stamp of a source that sends every `period_ns`, up to `jitter_ns` late. A period of 0: it is
-    /// not watched.
+    /// Takes the stamp of a source that sends every `period_ns`, at most `jitter_ns` late. A source with the
+    /// period 0 is ignored.
     constexpr void take(int source, std::int64_t stamp_ns, std::int64_t period_ns,
                         std::int64_t jitter_ns) noexcept {
         if (period_ns <= 0) {
@@ -34,8 +34,8 @@ class ClockStepWatch {
         mine.heard = true;
     }
 
-    /// Step (ns) of the clock shortly before `now_ns`, if all sources show it, to within `tolerance_ns`. A
-    /// source that lost frames meanwhile shows one period more for each of them.
+    /// Returns the step (ns) of the clock shortly before `now_ns`, if all sources show it to within
+    /// `tolerance_ns`. For a source that lost frames meanwhile, one period for each of them is subtracted.
     [[nodiscard]] constexpr std::optional<std::int64_t> step_ns(std::int64_t now_ns,
                                                                 std::int64_t tolerance_ns) const noexcept {
         std::optional<std::int64_t> least;
@@ -59,7 +59,7 @@ class ClockStepWatch {
         return least;
     }
 
-    /// The step that is left of this one where all sources lost the same number of frames meanwhile.
+    /// Returns the step modulo the period, in case that all sources lost the same number of frames.
     [[nodiscard]] static constexpr std::int64_t within_period(std::int64_t step_ns,
                                                               std::int64_t period_ns) noexcept {
         const std::int64_t rest_ns = step_ns % period_ns;
@@ -70,12 +70,12 @@ class ClockStepWatch {
 
   private:
     static constexpr std::int64_t memory_ns = 200'000'000;
-    static constexpr int most_lost = 3; ///< frames of a source
+    static constexpr int most_lost = 3; ///< lost frames of a source
 
     struct Source {
-        std::int64_t stamp_ns = 0; ///< of its last frame
+        std::int64_t stamp_ns = 0; ///< stamp of its last frame
         std::int64_t period_ns = 0;
-        std::int64_t step_ns = 0;    ///< of its last interval that was not its period
+        std::int64_t step_ns = 0;    ///< difference between its last unusual interval and its period
         std::int64_t stepped_ns = 0; ///< end of that interval
         bool heard = false;
         bool stepped = false;

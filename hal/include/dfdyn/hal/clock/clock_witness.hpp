@@ -7,13 +7,13 @@
 
 namespace dfdyn::hal {
 
-/// Knows which frames show the clock of the devices' stamps. A controller that stamps what it receives may
-/// stamp neither its error frames nor what this program sends: those have the operating system's clock, which
-/// may be seconds off. They show nothing then. O(1).
+/// Selects the frames whose stamps come from the clock of the devices' stamps. Some controllers stamp neither
+/// their error frames nor the frames that this program sends. These have the operating system's clock, which
+/// may be seconds off, and are no evidence. O(1).
 class ClockWitness {
   public:
-    /// Accepts a frame, and returns whether its stamp is of the clock of the devices' last frame; true before
-    /// the first of those.
+    /// Takes a frame and returns true if its stamp has the same source as the last device's frame; true
+    /// before the first such frame.
     constexpr bool shows_clock(const Frame& frame) noexcept {
         const bool of_device = !frame.error && frame.origin != Origin::this_socket;
         source_ = of_device ? frame.stamp_source : source_;
@@ -21,7 +21,7 @@ class ClockWitness {
     }
 
   private:
-    std::optional<StampSource> source_; ///< of the devices' stamps
+    std::optional<StampSource> source_; ///< source of the devices' stamps
 };
 
 } // namespace dfdyn::hal

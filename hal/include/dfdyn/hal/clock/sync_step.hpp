@@ -9,10 +9,10 @@
 
 namespace dfdyn::hal {
 
-/// The data of the last two answers of a device. O(1).
+/// Data of the last two answers of a device. O(1).
 class AnswerContents {
   public:
-    /// Takes an answer, and returns whether it has the data of one of the two before.
+    /// Takes an answer and returns true if it has the same data as one of the two before.
     constexpr bool take(const Frame& frame) noexcept {
         Data data{};
         std::copy_n(frame.data.begin(), data.size(), data.begin());
@@ -26,15 +26,15 @@ class AnswerContents {
     std::array<Data, 2> last_{};
 };
 
-/// Decides whether the answer of a device to a SYNC belongs to the last SYNC. A device answers each SYNC
-/// once. An answer is in step unless
-/// - it is the second since the SYNC: one of the two is late;
-/// - it is so late that it may be the answer to a SYNC after the last one: three quarters of a period later
-///   than the earliest answers, if that is not its usual time;
-/// - no answer came to the SYNC before, and this one is not at its usual time: it may be that one. Then the
-///   device may be late by a period from there on. None is in step until two come between two SYNCs, or a
-///   great many at the usual time. Not so where the next SYNC shows that the one between was lost, after
-///   which this one was at its usual time.
+/// Decides if a device's answer to a SYNC belongs to the last SYNC. A device answers each SYNC once. An
+/// answer is in step unless one of these holds:
+/// - It is the second one since the SYNC: one of the two is late.
+/// - It may be the answer to a later SYNC that was lost: it comes three quarters of a period later than the
+///   earliest answers, and not at the usual time.
+/// - The SYNC before had no answer, and this one is not at the usual time. It may be the missing one, and
+///   then the device may stay late by a period. No answer is in step until a second answer followed a SYNC
+///   for each missing one, or 200 came at the usual time. Exception: the next SYNC shows that one between was
+///   lost, after which this answer was at its usual time.
 ///
 /// O(1).
 class SyncStep {
@@ -50,9 +50,9 @@ class SyncStep {
         answers_ = 0;
     }
 
-    /// Takes an answer; whether it is in step. Before the first SYNC none is. `repeats`: it has the same
-    /// content as one of the two before, and may be a copy. Then two answers do not show that the device has
-    /// caught up.
+    /// Takes an answer and returns true if it is in step; false before the first SYNC. `repeats`: it has the
+    /// same content as one of the two before, and may be a copy. Then two answers do not prove that the
+    /// device caught up.
     constexpr bool answer(std::int64_t stamp_ns, bool repeats = false) noexcept {
         answered_ = true;
         if (!synchronised_ || (repeats && answers_ > 0)) {
@@ -69,9 +69,9 @@ class SyncStep {
         ++answers_;
         if (answers_ > 1) {
             const bool catches_up =
-                after_ns <= period_ns_ && !first_repeats_; // later it may answer a SYNC that was lost
+                after_ns <= period_ns_ && !first_repeats_; // a later one may answer a SYNC that was lost
             missing_ -= catches_up && missing_ > 0 ? 1 : 0;
-            behind_ = (behind_ || late_ns_ >= 0) && missing_ > 0; // 0: all have come
+            behind_ = (behind_ || late_ns_ >= 0) && missing_ > 0; // 0: none is missing
             late_ns_ = -1;
             return false;
         }
@@ -86,11 +86,11 @@ class SyncStep {
         return at_its_time(after_ns, usual);
     }
 
-    /// Whether the last answer came so late that it belongs to another SYNC than one before it: it says
-    /// nothing about the value measured at the last SYNC.
+    /// Returns true if the last answer was so late that it may belong to a lost SYNC after the last one. It
+    /// is no evidence about the value at the last SYNC.
     [[nodiscard]] constexpr bool late() const noexcept { return late_; }
 
-    /// Of the last SYNC.
+    /// Returns the stamp of the last SYNC.
     [[nodiscard]] constexpr std::int64_t sync_ns() const noexcept { return sync_ns_; }
 
   private:
@@ -101,7 +101,7 @@ class SyncStep {
         return a < b ? b - a : a - b;
     }
 
-    /// Whether an answer is in step that is not too late.
+    /// Returns true if an answer that is not too late is in step.
     constexpr bool at_its_time(std::int64_t after_ns, bool usual) noexcept {
         behind_ = behind_ || (missing_ > 0 && !usual);
         if (behind_) {
@@ -115,7 +115,7 @@ class SyncStep {
         return true;
     }
 
-    /// An answer came late, and no other, since the SYNC that was `interval_ns` before this one.
+    /// Explains a single late answer since the SYNC that was `interval_ns` before this one.
     constexpr void explain_late_answer(std::int64_t interval_ns) noexcept {
         if (late_ns_ < 0) {
             return;
@@ -129,20 +129,20 @@ class SyncStep {
         late_ns_ = -1;
     }
 
-    /// Follows the usual time; another one is taken over only after very many answers, because on a loaded
-    /// bus answers come late for a while.
+    /// Tracks the usual time from SYNC to answer. A different time is adopted only after 500 answers, because
+    /// on a loaded bus answers are temporarily late.
     constexpr void learn_usual_time(std::int64_t after_ns, bool usual) noexcept {
         constexpr int very_many = 500;
         earliest_ns_ = usual_ns_ < 0 ? after_ns : std::min(earliest_ns_, after_ns);
         unusual_ = usual ? 0 : std::min(unusual_ + 1, very_many);
         if (usual) {
-            usual_ns_ += (after_ns - usual_ns_) / 64; // slower than answers of a bus that fills
+            usual_ns_ += (after_ns - usual_ns_) / 64; // slower than the delays of a bus that fills
         } else if (usual_ns_ < 0 || unusual_ == very_many) {
             usual_ns_ = earliest_ns_ = after_ns;
         }
     }
 
-    /// Follows the period; a lasting change of more than a quarter is taken over after eight in a row.
+    /// Tracks the period. A change of more than a quarter is adopted after eight in a row.
     constexpr void learn_period(std::int64_t interval_ns) noexcept {
         constexpr int patience = 8;
         if (period_ns_ > 0 && distance(interval_ns, period_ns_) > period_ns_ / 4 && others_ < patience) {
@@ -156,19 +156,19 @@ class SyncStep {
 
     std::int64_t sync_ns_ = 0;
     std::int64_t period_ns_ = 0;
-    std::int64_t usual_ns_ = -1;   ///< from a SYNC to its answer; -1: not known
-    std::int64_t earliest_ns_ = 0; ///< the least of those times
-    std::int64_t late_ns_ = -1;    ///< time of an answer since the last SYNC that was too late; -1: none
+    std::int64_t usual_ns_ = -1;   ///< from a SYNC to its answer; -1: unknown
+    std::int64_t earliest_ns_ = 0; ///< the shortest of those times
+    std::int64_t late_ns_ = -1;    ///< time of a single too late answer since the last SYNC; -1: none
     int unusual_ = 0;              ///< answers in a row that were not at the usual time
-    int others_ = 0;               ///< intervals in a row that were not the period
+    int others_ = 0;               ///< intervals in a row that differed from the period
     int answers_ = 0;              ///< since the last SYNC
     bool synchronised_ = false;
     bool answered_ = false;
     bool first_repeats_ = false; ///< the first answer since the last SYNC may be a copy
-    int missing_ = 0;            ///< answers to earlier SYNCs that may yet come
-    bool late_ = false;          ///< the last answer
-    bool behind_ = false;        ///< all answers may be those to the SYNC before
-    int usual_answers_ = 0;      ///< in a row, while they may be behind
+    int missing_ = 0;            ///< answers to earlier SYNCs that may still come
+    bool late_ = false;          ///< the last answer was too late
+    bool behind_ = false;        ///< all answers may belong to the SYNC before
+    int usual_answers_ = 0;      ///< in a row, while `behind_`
 };
 
 } // namespace dfdyn::hal

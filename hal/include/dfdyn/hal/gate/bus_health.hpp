@@ -12,7 +12,7 @@ namespace dfdyn::hal {
 /// normal. An error-passive controller is degraded, but the frames that it receives are valid.
 class BusHealth {
   public:
-    /// Takes the state and counters after a drain. Losses count from the first counters.
+    /// Takes the state and the counters after a drain. Losses are counted from the first call.
     constexpr void update(BusState state, const BusCounters& counters) noexcept {
         const std::uint64_t lost = counters.dropped + counters.controller_overruns;
         if (started_ && lost != lost_) {
@@ -24,7 +24,7 @@ class BusHealth {
         state_ = state;
     }
 
-    /// Nothing is received: `bus_off`, `interface_down`, or ok.
+    /// Returns `bus_off` or `interface_down` if no frames are received, and otherwise ok.
     [[nodiscard]] constexpr Reason reason() const noexcept {
         switch (state_) {
         case BusState::off:
@@ -43,20 +43,20 @@ class BusHealth {
         return state_ == BusState::warning || state_ == BusState::passive;
     }
 
-    /// Whether frames were lost since the last call.
+    /// Returns true if frames were lost since the last call.
     constexpr bool take_loss() noexcept {
         const bool loss = loss_pending_;
         loss_pending_ = false;
         return loss;
     }
 
-    /// A device says that it lost messages.
+    /// Counts a loss that a device reported.
     constexpr void device_lost() noexcept {
         ++losses_;
         loss_pending_ = true;
     }
 
-    /// Frames lost since the first update, each loss that a device reported counted as one.
+    /// Returns the number of frames lost since the first update; a loss reported by a device counts as one.
     [[nodiscard]] constexpr std::uint64_t losses() const noexcept { return losses_; }
 
   private:

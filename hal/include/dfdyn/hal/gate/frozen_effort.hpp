@@ -8,19 +8,19 @@
 
 namespace dfdyn::hal {
 
-/// Detects an effort that repeats the same value while its joint moves; at rest a constant effort is no
-/// fault. The length of such runs in motion depends on the device's resolution. So the limit is twice the
-/// longest run of equal values that ended with a change of a few counts. Shorter runs may be coincidence.
-/// Runs are measured in periods: a value that was lost inside a run counts as one that came. O(1).
+/// Detects an effort that repeats its value while the joint moves; at rest a constant effort is no fault. The
+/// length of such runs depends on the device's resolution. The limit is therefore twice the longest run of
+/// equal values that ended with a change of a few counts. Runs are measured in periods and include lost
+/// values. O(1).
 class FrozenEffortGate {
   public:
-    /// `limit`: periods with the same value that are too many for any device, at least 2. `period_ns`: of the
-    /// values; 0: not known, so that no value is known to be lost.
+    /// `limit`: number of periods with equal values that no device has, at least 2. `period_ns`: of the
+    /// values; 0: unknown, so that lost values are not counted.
     explicit constexpr FrozenEffortGate(int limit, std::int64_t period_ns = 0) noexcept
         : limit_(limit), period_ns_(period_ns) {}
 
-    /// Whether this value is one too many. `position_rad`: the joint's last trusted position; `stamp_ns`: of
-    /// the value, later than the one before.
+    /// Takes a value and returns true if the effort is frozen. `position_rad`: last trusted position of the
+    /// joint; `stamp_ns`: of the value, increasing.
     constexpr bool frozen(double effort, double position_rad, std::int64_t stamp_ns = 0) noexcept {
         const int passed = periods_since(last_ns_, stamp_ns);
         last_ns_ = stamp_ns;
@@ -41,10 +41,10 @@ class FrozenEffortGate {
   private:
     static constexpr double motion_of_a_run_rad = 5e-3;
     static constexpr double motion_of_a_value_rad = 2e-4;
-    static constexpr int enough = 40; ///< runs of the moving joint
+    static constexpr int enough = 40; ///< runs of the moving joint until the limit is adapted
     static constexpr int slack = 6;   ///< periods, beyond twice the longest run
-    /// A silence counts as no more than this: a first value, a silence and an equal value are no frozen
-    /// effort even of a device that never repeated one, because 1 + 6 < 2 * 1 + 6.
+    /// A silence counts at most this many periods. Then value, silence and equal value are no frozen effort,
+    /// even of a device that never repeated one: 1 + 6 < 2 * 1 + 6.
     static constexpr int longest_silence = slack;
 
     [[nodiscard]] constexpr int periods_since(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
@@ -83,10 +83,10 @@ class FrozenEffortGate {
     int limit_;
     std::int64_t period_ns_;
     std::int64_t last_ns_ = 0;
-    int run_ = 0; ///< periods from its first value
+    int run_ = 0; ///< periods since its first value
     int longest_ = 1;
     int learned_ = 0;
-    int longest_at_any_speed_ = 1; ///< also of the joint at rest, whose effort changes less
+    int longest_at_any_speed_ = 1; ///< includes the joint at rest, whose effort changes less
     int learned_at_any_speed_ = 0;
     double last_ = 0;
     double smallest_change_ = 0;

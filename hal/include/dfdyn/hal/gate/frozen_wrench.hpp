@@ -10,22 +10,22 @@
 
 namespace dfdyn::hal {
 
-/// Sees a sensor that repeats the very same raw values under fresh stamps. For wrenches, whose last bits are
-/// noise; a standing encoder is constant by right.
+/// Detects a sensor that repeats the same raw values with new stamps. Only for wrenches, whose last bits are
+/// noise; the encoder of a joint at rest is constant.
 template <int values>
 class FrozenWrenchGate {
   public:
     using Raw = std::array<std::int32_t, static_cast<std::size_t>(values)>;
 
-    /// `limit` identical readings in a row, at least 2, are too many; three over as many periods are, too.
-    /// `period_ns`: of the readings; 0: not known.
+    /// `limit`: identical readings in a row that indicate a fault, at least 2. Three that span as many
+    /// periods do, too. `period_ns`: of the readings; 0: unknown.
     explicit constexpr FrozenWrenchGate(int limit, std::int64_t period_ns = 0) noexcept
         : limit_(limit), most_since_frozen_(limit + 2 * (most_others + 1)),
           longest_ns_((limit - 1) * period_ns - period_ns / 2), since_frozen_(most_since_frozen_ + 1) {}
 
-    /// Whether this reading is the limit-th identical one in a row, or a later one. One or two that differ
-    /// are believed, but do not end the row: they may have flipped bits. Nor is a sensor believed that shows
-    /// the very values at which it was frozen a few readings ago.
+    /// Returns true from the `limit`-th identical reading on. One or two different readings are accepted but
+    /// do not end the row, because they may have flipped bits. A reading that shortly afterwards equals the
+    /// frozen values is rejected, too.
     constexpr bool frozen(const Raw& raw, std::int64_t stamp_ns = 0) noexcept {
         since_frozen_ = std::min(since_frozen_ + 1, most_since_frozen_ + 1);
         const bool known = since_frozen_ <= most_since_frozen_ && raw == frozen_;
@@ -51,21 +51,21 @@ class FrozenWrenchGate {
         return frozen || known;
     }
 
-    /// How often the sensor froze.
+    /// Returns how many times the sensor froze.
     [[nodiscard]] constexpr std::uint64_t count() const noexcept { return episodes_; }
 
   private:
     static constexpr int most_others = 2;
 
     int limit_;
-    int most_since_frozen_;   ///< a row that is frozen still, and twice flipped bits that end it; no longer
-    std::int64_t longest_ns_; ///< that identical readings may last; not positive: endless
+    int most_since_frozen_; ///< length of a row that is still frozen, plus two interruptions by flipped bits
+    std::int64_t longest_ns_; ///< longest duration of identical readings; not positive: unlimited
     std::int64_t begin_ns_ = 0;
-    int run_ = 0;    ///< identical readings in a row; it stops one beyond the limit
-    int others_ = 0; ///< readings since then that differ
+    int run_ = 0;    ///< identical readings in a row; at most one more than the limit
+    int others_ = 0; ///< different readings since then
     Raw last_{};
     Raw frozen_{};
-    int since_frozen_; ///< readings since the row that had these values
+    int since_frozen_; ///< readings since the last frozen one
     std::uint64_t episodes_ = 0;
 };
 

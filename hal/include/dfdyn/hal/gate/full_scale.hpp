@@ -10,11 +10,11 @@
 
 namespace dfdyn::hal {
 
-/// The full scales of a sensor's channels, as described or as the sensor reports them. It returns none until
+/// Full scales of a sensor's channels, from its description or from its own reports. They are not valid until
 /// all are known and plausible. With a full scale of 0 every wrench is zero; with a default, or the value of
 /// another calibration, it is wrong by a factor. So a report never replaces a full scale silently:
-/// - if it contradicts the description, there is none until a report of that channel agrees with it;
-/// - if it contradicts an earlier report, there is none until all channels were reported again, alike.
+/// - if it contradicts the description, none is valid until a report of that channel agrees with it;
+/// - if it contradicts an earlier report, none is valid until all channels were reported again consistently.
 template <int channels>
 class FullScaleGate {
   public:
@@ -66,18 +66,18 @@ class FullScaleGate {
         return reason;
     }
 
-    /// Of a channel; meaningful while `reason()` is ok.
+    /// Returns the full scale of a channel; valid while `reason()` is ok.
     [[nodiscard]] constexpr double operator[](std::size_t channel) const noexcept {
         return channel_[channel].value;
     }
 
-    /// Whether a channel has a full scale, and this one.
+    /// Returns true if the channel is known and has this full scale.
     [[nodiscard]] constexpr bool agrees(int channel, double full_scale) const noexcept {
         return has(channel) && channel_[static_cast<std::size_t>(channel)].known &&
                channel_[static_cast<std::size_t>(channel)].value == full_scale;
     }
 
-    /// Number of reports that differ from the one before, or from the description.
+    /// Returns the number of reports that differ from the one before, or from the description.
     [[nodiscard]] constexpr std::uint64_t changed() const noexcept { return changed_; }
 
   private:
@@ -85,7 +85,7 @@ class FullScaleGate {
         double value = 0;
         bool known = false;
         bool described = false;
-        bool in_doubt = false; ///< contradicted, and not reported again since
+        bool in_doubt = false; ///< contradicted, and not yet confirmed by another report
     };
 
     [[nodiscard]] static constexpr bool has(int channel) noexcept {

@@ -6,17 +6,17 @@
 
 namespace dfdyn::hal {
 
-/// Sees holes in a source's values: two neighbours further apart than the limit.
+/// Detects gaps in a source's values: consecutive values further apart than the limit.
 class GapGate {
   public:
     explicit constexpr GapGate(std::int64_t max_gap_ns) noexcept : max_gap_ns_(max_gap_ns) {}
 
-    /// Whether a hole lies between two neighbours' stamps.
+    /// Returns true if there is a gap between two consecutive stamps.
     [[nodiscard]] constexpr bool between(std::int64_t earlier_ns, std::int64_t later_ns) const noexcept {
         return later_ns - earlier_ns > max_gap_ns_;
     }
 
-    /// Whether a hole ends with a value of this stamp, which is counted. Stamps must increase.
+    /// Takes a stamp and returns true if a gap precedes it. Counts the gaps. Stamps must increase.
     constexpr bool ends(std::int64_t stamp_ns) noexcept {
         const bool gap = started_ && between(last_ns_, stamp_ns);
         if (gap) {

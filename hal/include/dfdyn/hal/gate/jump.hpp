@@ -10,20 +10,20 @@
 
 namespace dfdyn::hal {
 
-/// Detects an output whose prediction error is much larger than usual. The prediction of each channel is the
-/// last output or the line through the last two, whichever has had the smaller errors. The limit is ten times
-/// the usual error, and at least 0.5 % of the largest value so far. A force may change at any rate; so
-/// several such outputs in a row that agree with each other are believed; not where they are the very same,
-/// as those of a sensor that freezes. O(values).
+/// Detects an output whose prediction error is much larger than usual. Each channel is predicted by the last
+/// output or by the line through the last two, whichever had the smaller errors. The limit is ten times the
+/// usual error, and at least 0.5 % of the largest value so far. A force may change at any rate. So several
+/// consecutive outputs that are consistent are accepted, unless they are identical (frozen sensor).
+/// O(values).
 template <int values>
 class JumpGate {
   public:
     using Values = std::array<double, static_cast<std::size_t>(values)>;
 
-    /// Outputs further apart than `max_age` are not compared.
+    /// Does not compare outputs further apart than `max_age`.
     explicit constexpr JumpGate(std::int64_t max_age_ns) noexcept : max_age_ns_(max_age_ns) {}
 
-    /// Whether this output is to be refused.
+    /// Returns true if this output is rejected.
     constexpr bool jumps(const Values& value, std::int64_t stamp_ns) noexcept {
         const bool stale = trusted_.count > 0 && stamp_ns - trusted_.stamp_ns > max_age_ns_;
         const bool leads = !stale && follows(trusted_, value, stamp_ns);
@@ -51,13 +51,13 @@ class JumpGate {
 
   private:
     static constexpr int first_outputs = 30;
-    static constexpr int enough = 4; ///< that agree
+    static constexpr int enough = 4; ///< consistent outputs
     static constexpr int enough_after_silence = 3;
     static constexpr double usual_times = 10;
     static constexpr double share_of_largest = 0.005;
-    static constexpr double implausible = 3; ///< times the usual: more is learned as this; ten would run away
+    static constexpr double implausible = 3; ///< limit of a learned error, in usual errors; ten diverges
 
-    /// The last outputs of those that follow each other.
+    /// The last consistent outputs.
     struct Line {
         Values last{};
         Values slope{}; ///< per ns
@@ -76,7 +76,7 @@ class JumpGate {
         line.count = std::min(line.count + (repeats ? 0 : 1), enough);
     }
 
-    /// Whether an output may follow a line. Its plausible distances from the line are learned.
+    /// Returns true if an output continues a line, and adapts the usual errors.
     constexpr bool follows(const Line& line, const Values& value, std::int64_t stamp_ns) noexcept {
         constexpr double memory = 64; // outputs
         const std::int64_t age_ns = stamp_ns - line.stamp_ns;
@@ -105,8 +105,8 @@ class JumpGate {
     std::int64_t max_age_ns_;
     Line trusted_;
     Line candidate_;
-    Values usual_change_{}; ///< between outputs that follow each other
-    Values usual_bend_{};   ///< from the line through the two before
+    Values usual_change_{}; ///< between consecutive outputs
+    Values usual_bend_{};   ///< distance from the line through the two before
     Values largest_{};
     int learned_ = 0;
     std::uint64_t jumps_ = 0;

@@ -10,12 +10,12 @@
 
 namespace dfdyn::hal {
 
-/// Joins the two frames of one wrench, which carry no counter: they belong together when the second was
-/// stamped at most `delay` after the first and no later wrench can have been sent by then. So halves of
-/// different wrenches are never joined, even where frames wait for the bus for most of a period; two that may
-/// or may not belong together are not joined either. Frames that overtook each other on the way, but are
-/// stamped in order, are joined. Frames that share one stamp (`StampSource::arrival`) are joined in their
-/// order; a loss among them cannot be seen.
+/// Joins the two frames of one wrench, which have no counter. They belong together if the second has its
+/// stamp at most `delay` after the first, and no later wrench can have been sent by then. So halves of
+/// different wrenches are never joined, even if frames wait for the bus for most of a period. Ambiguous
+/// halves are not joined either. Frames that arrive out of order, but with stamps in order, are joined.
+/// Frames that share one stamp (`StampSource::arrival`) are joined in their order; a loss among them is not
+/// detected.
 class PairGate {
   public:
     /// Of the sensor's wrenches; `delay` also covers the time that the two frames take.
@@ -27,11 +27,11 @@ class PairGate {
     enum class Result : std::uint8_t {
         waiting,  ///< for the other half
         paired,   ///< `first()` and `second()` are one wrench
-        orphaned, ///< a half will never find its other one; it was stamped at `orphan_ns()`
-        doubled   ///< another sender uses the identifier; whatever was pending is forgotten
+        orphaned, ///< a half without its partner, with the stamp `orphan_ns()`
+        doubled   ///< another sender uses the identifier; a pending half is discarded
     };
 
-    /// `part` is 0 or 1.
+    /// Takes a frame; `part` is 0 or 1.
     constexpr Result push(int part, const Frame& frame) noexcept {
         const auto mine = static_cast<std::size_t>(part);
         if (rate_[mine].too_soon(frame.stamp_ns)) {
@@ -51,7 +51,7 @@ class PairGate {
         return match(mine);
     }
 
-    /// Forgets a pending half: frames were lost, and what comes next may belong to another wrench.
+    /// Discards a pending half after a loss of frames, because the next one may belong to another wrench.
     constexpr void reset() noexcept { pending_ = {}; }
 
     [[nodiscard]] constexpr const Frame& first() const noexcept { return half_[0]; }
@@ -59,12 +59,12 @@ class PairGate {
     [[nodiscard]] constexpr std::int64_t orphan_ns() const noexcept { return orphan_ns_; }
     [[nodiscard]] constexpr std::uint64_t pairs() const noexcept { return pairs_; }
 
-    /// How many first (0) or second (1) halves never found the other.
+    /// Returns the number of first (0) or second (1) halves without a partner.
     [[nodiscard]] constexpr std::uint64_t unpaired(int part) const noexcept {
         return unpaired_[static_cast<std::size_t>(part)];
     }
 
-    /// Number of times a second sender was seen.
+    /// Returns how many times a second sender was detected.
     [[nodiscard]] constexpr std::uint64_t doubles() const noexcept { return doubles_; }
 
   private:

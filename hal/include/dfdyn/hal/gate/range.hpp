@@ -9,13 +9,13 @@
 
 namespace dfdyn::hal {
 
-/// Values that a joint or a sensor's channel can have, ends included.
+/// Closed interval of the values of a joint or of a sensor's channel.
 struct Range {
     double lowest;
     double highest;
 };
 
-/// Refuses values outside the sensor's range, and NaN.
+/// Rejects values outside the sensor's range, and NaN.
 template <int values>
 class RangeGate {
   public:
@@ -24,7 +24,7 @@ class RangeGate {
 
     explicit constexpr RangeGate(const Ranges& ranges) noexcept : ranges_(ranges) {}
 
-    /// Whether all are within; a set that is not is counted.
+    /// Returns true if all values are in range. Counts the sets that are not.
     constexpr bool within(const Values& value) noexcept {
         const bool all = contains(value);
         beyond_ += all ? 0U : 1U;

@@ -8,11 +8,11 @@
 
 namespace dfdyn::hal {
 
-/// Sees readings that are not those of the moment because the sensor is at the end of its range: the device
-/// says so, or a raw value is at an end of 16 bits, which some devices leave to the receiver to see.
+/// Detects readings that are wrong because the sensor is at the end of its range: the device reports it, or a
+/// raw value is at an end of 16 bits. Some devices leave this test to the receiver.
 class SaturationGate {
   public:
-    /// `flagged`: the device says it.
+    /// Takes a reading and returns true if it is saturated. `flagged`: the device reports saturation.
     constexpr bool saturated(bool flagged, std::span<const std::int32_t> raw) noexcept {
         bool now = flagged;
         for (const std::int32_t value : raw) {
@@ -24,7 +24,7 @@ class SaturationGate {
         return now;
     }
 
-    /// How many readings were saturated, and in how many runs.
+    /// Return the number of saturated readings, and of runs of them.
     [[nodiscard]] constexpr std::uint64_t count() const noexcept { return readings_; }
     [[nodiscard]] constexpr std::uint64_t episodes() const noexcept { return episodes_; }
 

@@ -23,26 +23,26 @@ class SendRateGate {
     explicit constexpr SendRateGate(const Config& config) noexcept
         : shortest_ns_(config.period_ns - config.period_ns / clock_tolerance), delay_ns_(config.delay_ns) {}
 
-    /// Whether this frame cannot be from the sender of the frame before. If so, the state restarts with it.
-    /// Frames that share a stamp, or were overtaken, are no evidence.
+    /// Takes a frame and returns true if its sender cannot be that of the frame before. If so, the state
+    /// restarts with this frame. Frames that share a stamp, or arrive out of order, are no evidence.
     constexpr bool too_soon(std::int64_t stamp_ns) noexcept {
         if (started_ && stamp_ns <= last_ns_) {
             return false;
         }
         const bool soon = started_ && !could_have_sent_again_by(stamp_ns);
-        const std::int64_t earliest_ns = stamp_ns - (soon ? delay_ns_ / 2 : delay_ns_); // it is on trial
+        const std::int64_t earliest_ns = stamp_ns - (soon ? delay_ns_ / 2 : delay_ns_); // after a detection
         sent_ns_ = started_ && !soon ? std::max(earliest_ns, sent_ns_ + shortest_ns_) : earliest_ns;
         last_ns_ = stamp_ns;
         started_ = true;
         return soon;
     }
 
-    /// Whether a frame after the last one can have come by then. Requires a frame.
+    /// Returns true if one sender can have sent another frame by then. Requires a frame.
     [[nodiscard]] constexpr bool could_have_sent_again_by(std::int64_t stamp_ns) const noexcept {
         return sent_ns_ + shortest_ns_ <= stamp_ns;
     }
 
-    /// The last frames of two identifiers were sent together: both get the later of their earliest times.
+    /// Notes that the last frames of two identifiers were sent together: both get the later earliest time.
     static constexpr void sent_together(SendRateGate& one, SendRateGate& other) noexcept {
         one.sent_ns_ = other.sent_ns_ = std::max(one.sent_ns_, other.sent_ns_);
     }
@@ -53,23 +53,23 @@ class SendRateGate {
 
     std::int64_t shortest_ns_;
     std::int64_t delay_ns_;
-    std::int64_t sent_ns_ = 0; ///< the last frame's, at the earliest
+    std::int64_t sent_ns_ = 0; ///< earliest send time of the last frame
     std::int64_t last_ns_ = 0;
     bool started_ = false;
 };
 
-/// Also refuses the frames right after a second sender was seen: of two interleaved senders every other frame
-/// is in time.
+/// Also rejects the frames right after the detection of a second sender. Of two interleaved senders, every
+/// other frame is in time.
 class CollisionHold {
   public:
-    /// `too_soon`: of a SendRateGate. Whether this frame is refused.
+    /// Returns true if this frame is rejected. `too_soon`: result of a SendRateGate.
     constexpr bool seen(bool too_soon) noexcept {
         count_ += too_soon ? 1U : 0U;
         left_ = too_soon ? frames : left_ - (left_ > 0 ? 1 : 0);
         return left_ > 0;
     }
 
-    /// Number of times a second sender was seen.
+    /// Returns how many times a second sender was detected.
     [[nodiscard]] constexpr std::uint64_t count() const noexcept { return count_; }
 
   private:

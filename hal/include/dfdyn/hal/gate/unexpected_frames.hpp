@@ -8,8 +8,8 @@
 
 namespace dfdyn::hal {
 
-/// Frames that should not be on the bus: how many, and the first, which a person goes looking for. One for
-/// identifiers that nobody claims, one for frames that a decoder rejects.
+/// Count of the frames that should not be on the bus, and the first of them, for a person to find. Used for
+/// identifiers without a device, and for frames that a decoder rejects.
 class UnexpectedFrames {
   public:
     struct Entry {
@@ -29,7 +29,7 @@ class UnexpectedFrames {
 
     [[nodiscard]] constexpr std::uint64_t count() const noexcept { return count_; }
 
-    /// Meaningful while `count()` is not 0.
+    /// Returns the first one; valid while `count()` is not 0.
     [[nodiscard]] constexpr const Entry& first() const noexcept { return first_; }
 
   private:
