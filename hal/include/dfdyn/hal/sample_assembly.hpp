@@ -16,7 +16,7 @@
 
 namespace dfdyn::hal {
 
-/// Assembles samples from the frames of a bus: all joints and the outputs, at one instant.
+/// Assembles samples from the frames of a bus: all joints and the outputs at one time.
 ///
 /// `take` (or `drain`, for all frames of a bus) accepts the frames as they arrive. `assemble(instant, now)`
 /// returns the sample of an instant in the recent past. Each value is interpolated linearly between the
@@ -184,7 +184,7 @@ class SampleAssembly {
 
     [[nodiscard]] constexpr std::size_t used() const noexcept { return static_cast<std::size_t>(joints_); }
 
-    /// To the boards and the sensor.
+    /// Passes a frame to the boards and the sensor.
     constexpr SampleTrigger offer(const Frame& frame) noexcept {
         bool known = false;
         SampleTrigger moment;
@@ -243,7 +243,7 @@ class SampleAssembly {
             const bool other_source = reason == Reason::position_jump || reason == Reason::position_lost ||
                                       reason == Reason::position_frozen || reason == Reason::id_collision;
             if (other_source && judged.effort_reason == Reason::ok) {
-                judged.effort_reason = reason; // the same frame's
+                judged.effort_reason = reason; // of the same frame
             }
         }
         output_.take(judged, position_[joint].motion().position_rad());

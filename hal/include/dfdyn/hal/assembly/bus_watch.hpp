@@ -13,16 +13,15 @@ struct BusWatch {
     explicit constexpr BusWatch(const ClockGate::Config& config) noexcept : clock(config) {}
 
     ClockGate clock;
-    ClockWitness witness; ///< of that clock
+    ClockWitness witness; ///< selects the frames of that clock
     BusHealth health;
-    UnexpectedFrames unknown;  ///< on identifiers of no known device
-    UnexpectedFrames rejected; ///< on known identifiers, but of another form
-    std::uint64_t own = 0;     ///< our own frames, which the socket returns: ignored
-    std::uint64_t from_host =
-        0; ///< from another program of this host: a simulation, or a replay on a live bus
+    UnexpectedFrames unknown;    ///< on identifiers of no known device
+    UnexpectedFrames rejected;   ///< on known identifiers, but of another form
+    std::uint64_t own = 0;       ///< own frames that the socket returns; ignored
+    std::uint64_t from_host = 0; ///< from other programs of this host: a simulation, or a replay
 
-    /// Returns clock_jumped for a source that is missing because its bus' stamps are not believed; any other
-    /// reason as it is.
+    /// Returns `clock_jumped` if a source is missing because the stamps of its bus are rejected. Returns any
+    /// other reason unchanged.
     [[nodiscard]] constexpr Reason explain(Reason reason) const noexcept {
         const bool missing = reason == Reason::position_stale || reason == Reason::output_stale ||
                              reason == Reason::waiting_for_position || reason == Reason::waiting_for_output ||

@@ -11,8 +11,8 @@
 
 namespace dfdyn::hal {
 
-/// An arm's output that its joints measure themselves: one torque (N·m) or current (A) per joint. Nothing
-/// bounds how fast a motor's current may change, so that no step of it is refused.
+/// The output of an arm that its joints measure: one torque (N·m) or current (A) per joint. The rate of
+/// change of a motor current has no limit, so that no step is rejected.
 template <int n, int capacity>
 class EffortOutput {
   public:
@@ -30,11 +30,11 @@ class EffortOutput {
 
     [[nodiscard]] constexpr Extent<n> size() const noexcept { return joints_; }
 
-    /// No frame is for this output alone.
+    /// Ignores frames, because no frame is for this output alone.
     constexpr Decoded take(const Frame& /*frame*/) noexcept { return {}; }
 
-    /// The effort that comes with a joint, which must be one of the arm's. Zero is as good as any: it need
-    /// not qualify. `position_rad`: the joint's last trusted position.
+    /// Takes the effort that a joint sends with its position. The joint must belong to the arm. Zeros are
+    /// valid, so that the source need not qualify. `position_rad`: last trusted position of the joint.
     constexpr void take(const JointValue& value, double position_rad) noexcept {
         if (value.effort_reason == Reason::no_output) {
             return;
@@ -45,7 +45,7 @@ class EffortOutput {
         if (later && rated_ && collision_[joint].seen(rate_[joint].too_soon(value.stamp_ns))) {
             reason = Reason::id_collision;
         }
-        const bool known = later && value.effort_reason == Reason::ok; // whoever sent it
+        const bool known = later && value.effort_reason == Reason::ok; // from any sender
         if (known && frozen_[joint].frozen(value.effort, position_rad, value.stamp_ns) &&
             reason == Reason::ok) {
             reason = Reason::output_frozen;
@@ -55,7 +55,7 @@ class EffortOutput {
 
     [[nodiscard]] constexpr bool claims(std::uint32_t /*id*/) const noexcept { return false; }
 
-    /// All efforts at an instant; the first reason of a joint. See Track.
+    /// Returns all efforts at a time; the reason is that of the first joint with one. See Track.
     constexpr Measurement<places(n)> at(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
         Measurement<places(n)> all;
         for (std::size_t i = 0; i < used(); ++i) {
@@ -67,7 +67,7 @@ class EffortOutput {
         return all;
     }
 
-    /// The least direct of the joints'.
+    /// Returns the least direct origin of all joints.
     [[nodiscard]] constexpr ValueOrigin origin(std::int64_t instant_ns) const noexcept {
         ValueOrigin all = track_[0].origin(instant_ns);
         for (std::size_t i = 0; i < used(); ++i) {
@@ -86,7 +86,7 @@ class EffortOutput {
                            [](const auto& track) { return track.heard(); });
     }
 
-    /// Of the joint that is behind the others. Requires `heard()`.
+    /// Returns the newest stamp of the joint that is furthest behind. Requires `heard()`.
     [[nodiscard]] constexpr std::int64_t newest_ns() const noexcept {
         std::int64_t newest_ns = track_[0].newest_ns();
         for (std::size_t i = 0; i < used(); ++i) {
@@ -95,10 +95,10 @@ class EffortOutput {
         return newest_ns;
     }
 
-    /// Of its measurements; 0: not known.
+    /// Returns the period of its measurements; 0: unknown.
     [[nodiscard]] constexpr std::int64_t period_ns() const noexcept { return track_[0].period_ns(); }
 
-    /// Nothing is pending.
+    /// Does nothing, because no half is pending.
     constexpr void lost() noexcept {}
 
     /// Gate of a joint's effort, with the number of times it froze.

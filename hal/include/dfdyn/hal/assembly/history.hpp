@@ -10,7 +10,7 @@
 
 namespace dfdyn::hal {
 
-/// Values measured at one instant, or why there are none.
+/// Values measured at one time, or the reason why there are none.
 template <int values>
 struct Measurement {
     std::int64_t stamp_ns = 0;
@@ -18,14 +18,14 @@ struct Measurement {
     std::array<double, static_cast<std::size_t>(values)> value{};
 };
 
-/// The last `capacity` measurements of a source, by stamp.
+/// The last `capacity` measurements of a source, ordered by stamp.
 template <int values, int capacity>
 class History {
   public:
     using Entry = Measurement<values>;
     static_assert(capacity >= 2);
 
-    /// False, and nothing changed, for a stamp that is not later than the newest.
+    /// Adds a measurement. Returns false and changes nothing if its stamp is not later than the newest.
     constexpr bool push(const Entry& entry) noexcept {
         if (filled_ > 0 && entry.stamp_ns <= newest().stamp_ns) {
             return false;
@@ -38,14 +38,14 @@ class History {
 
     [[nodiscard]] constexpr bool empty() const noexcept { return filled_ == 0; }
 
-    /// Requires that it is not empty.
+    /// Returns the newest measurement. Requires that it exists.
     [[nodiscard]] constexpr const Entry& newest() const noexcept { return ring_[newest_]; }
 
-    /// The newest is not to be used after all. Requires that there is one.
+    /// Invalidates the newest measurement. Requires that it exists.
     constexpr void spoil_newest(Reason reason) noexcept { ring_[newest_].reason = reason; }
 
-    /// The neighbours of an instant: the last entry not later than it, and the first one later; null for
-    /// none. O(capacity).
+    /// The neighbours of a time: the last entry not later than it, and the first later one; null for none.
+    /// O(capacity).
     struct Neighbours {
         const Entry* before = nullptr;
         const Entry* after = nullptr;
@@ -66,7 +66,7 @@ class History {
     int filled_ = 0;
 };
 
-/// Between two measurements, linearly. The stamps must differ and the instant lie between.
+/// Interpolates linearly between two measurements. Their stamps must differ and enclose `instant_ns`.
 template <int values>
 [[nodiscard]] constexpr Measurement<values> interpolate(const Measurement<values>& before,
                                                         const Measurement<values>& after,

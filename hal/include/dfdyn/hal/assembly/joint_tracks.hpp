@@ -12,8 +12,8 @@
 
 namespace dfdyn::hal {
 
-/// The recent positions of all joints of an arm. A clock that was set by less than the clock gate sees moves
-/// each joint by its own velocity; where all sources show the same step, the joints are believed again.
+/// The recent positions of all joints of an arm. A clock step too small for ClockGate offsets each joint by
+/// its own velocity. If all sources show the same step, the joints are trusted again.
 template <int n, int capacity>
 class JointTracks {
   public:
@@ -22,7 +22,7 @@ class JointTracks {
         : JointTracks(joints, config, range, limits,
                       std::make_index_sequence<static_cast<std::size_t>(places(n))>{}) {}
 
-    /// Takes a device's value of a joint, 0 … n - 1. Returns ok if it is accepted, or the reason why not.
+    /// Takes a device's value of a joint, 0 … n - 1. Returns ok, or the reason of the rejection.
     constexpr Reason push(const JointValue& value) noexcept {
         PositionTrack<capacity>& track = track_[static_cast<std::size_t>(value.joint)];
         steps_.take(value.joint, value.stamp_ns, period_ns_, jitter_ns_);
@@ -31,19 +31,19 @@ class JointTracks {
         return reason;
     }
 
-    /// A measurement of the arm's sensor, which shows steps of the clock too.
+    /// Takes the stamp of the arm's sensor, which also shows clock steps.
     constexpr void sensor_measured(std::int64_t stamp_ns, std::int64_t period_ns) noexcept {
         steps_.take(places(n), stamp_ns, period_ns, jitter_ns_);
     }
 
-    /// The clock of the stamps was set: nobody knows how long the joints were not seen.
+    /// Notes a clock step: the time since the last positions is unknown.
     constexpr void clock_set() noexcept {
         for (PositionTrack<capacity>& track : track_) {
             track.motion().forget_time();
         }
     }
 
-    /// Whether a position of this instant is missing and may yet be interpolated.
+    /// Returns true if a position at this time is missing and may still be interpolated.
     [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
         return std::any_of(track_.begin(), track_.begin() + joints_,
                            [&](const auto& track) { return track.pending(instant_ns, now_ns); });

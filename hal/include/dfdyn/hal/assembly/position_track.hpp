@@ -8,14 +8,14 @@
 
 namespace dfdyn::hal {
 
-/// Returns the gate for one sender of a joint's values: a frame may wait for the bus for a whole period, and
-/// the SYNC that it answers may be irregular by a period.
+/// Returns the rate gate of a joint's values. A frame may wait for the bus for a whole period, and the SYNC
+/// that it answers may be irregular by a period.
 [[nodiscard]] constexpr SendRateGate joint_rate(const TrackConfig& config) noexcept {
     return SendRateGate(SendRateGate::Config{config.period_ns, config.period_ns});
 }
 
-/// The recent positions of one joint: those of one sender (SendRateGate) that its motion leads to
-/// (MotionGate).
+/// The recent positions of one joint that come from one sender (SendRateGate) and agree with the joint's
+/// motion (MotionGate).
 template <int capacity>
 class PositionTrack {
   public:
@@ -26,7 +26,7 @@ class PositionTrack {
               {limits, range, config.max_age_ns, config.period_ns, config.jitter_ns, config.qualification}),
           rate_(joint_rate(config)), rated_(config.period_ns > 0), latency_ns_(config.latency_ns) {}
 
-    /// Takes a device's value of this joint's position. Returns ok if it is accepted, or the reason why not.
+    /// Takes a device's value of this joint's position. Returns ok, or the reason of the rejection.
     constexpr Reason push(const JointValue& value) noexcept {
         if (!track_.is_later(value.stamp_ns)) {
             track_.push(value.stamp_ns, value.position_reason, {value.position_rad}, false);
@@ -40,7 +40,7 @@ class PositionTrack {
         if (value.position_reason == Reason::ok) {
             verdict = motion_.take(reading_of(value));
             verdict.reason = collides ? Reason::id_collision : verdict.reason;
-        } else if (value.position_reason == Reason::sync_unknown) { // which says nothing about the device
+        } else if (value.position_reason == Reason::sync_unknown) { // no information about the device
             motion_.glance(reading_of(value));
         } else {
             motion_.interrupt(reading_of(value));
@@ -68,7 +68,7 @@ class PositionTrack {
     [[nodiscard]] constexpr MotionGate& motion() noexcept { return motion_; }
     [[nodiscard]] constexpr const MotionGate& motion() const noexcept { return motion_; }
 
-    /// Number of times a second sender was seen.
+    /// Returns how many times a second sender was detected.
     [[nodiscard]] constexpr std::uint64_t collisions() const noexcept { return collision_.count(); }
 
   private:
@@ -81,7 +81,7 @@ class PositionTrack {
                 .zero = value.raw_zero};
     }
 
-    /// The motion gate qualifies.
+    /// Switches the track's qualification off, because MotionGate qualifies.
     [[nodiscard]] static constexpr TrackConfig without_qualification(TrackConfig config) noexcept {
         config.qualification = {.readings = 0, .zero_readings = 0};
         return config;

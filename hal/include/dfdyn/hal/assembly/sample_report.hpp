@@ -15,26 +15,26 @@
 
 namespace dfdyn::hal {
 
-/// Why a sample is as it is, and how many of its elements are used: of n joints and m outputs.
+/// Validity of a sample's values, and the numbers of joints and outputs in use (n and m).
 template <int n, int m>
 struct SampleReport {
     Reason position = Reason::ok; ///< ok: there is a sample
-    int joint = unused_joint;     ///< the first joint that `position` is about, if it is about one
+    int joint = unused_joint;     ///< first joint to which `position` applies, if any
     Reason output = Reason::ok;   ///< ok: its output is valid
-    /// Of each joint; those with ok have their position in the sample, whether or not all have.
+    /// reasons of the joints; a joint with ok has its position in the sample, even if others have none
     PerJoint<Reason, n> joint_reason{};
-    /// How the positions, and the output, came about; none where there is none.
+    /// origins of the positions and of the output; none if there is no value
     PerJoint<ValueOrigin, n> position_origin{};
     ValueOrigin output_origin = ValueOrigin::none;
-    /// Time since the newest position of each joint, and the newest output, were measured; the largest number
-    /// where there is none.
+    /// time since the newest position of each joint, and the newest output, were measured; the largest
+    /// integer if there is none
     PerJoint<std::int64_t, n> position_age_ns{};
     std::int64_t output_age_ns = 0;
     [[no_unique_address]] Extent<n> joints{};
     [[no_unique_address]] Extent<m> outputs{};
 };
 
-/// A sample, and why it is as it is.
+/// A sample and its report.
 template <class Scalar, int n, int m>
 struct AssembledSample {
     dfdyn::Sample<Scalar, places(n), places(m)> sample;
@@ -60,13 +60,13 @@ struct AssembledSample {
 /// Number of occurrences of each reason; never decreases.
 struct AssemblyCounters {
     std::uint64_t calls = 0;
-    std::uint64_t samples = 0;                                   ///< of them: with positions
-    std::uint64_t outputs = 0;                                   ///< of them: with a valid output
-    std::uint64_t bridged = 0;                                   ///< samples: with a value over a missing one
-    std::array<std::uint64_t, reason_count> positions_refused{}; ///< by the reason's number
-    std::array<std::uint64_t, reason_count> outputs_refused{};   ///< of calls with positions
+    std::uint64_t samples = 0; ///< calls with all positions
+    std::uint64_t outputs = 0; ///< calls with a valid output
+    std::uint64_t bridged = 0; ///< samples with a value interpolated over a missing one
+    std::array<std::uint64_t, reason_count> positions_refused{}; ///< indexed by reason
+    std::array<std::uint64_t, reason_count> outputs_refused{}; ///< of calls with positions, indexed by reason
 
-    /// Counts a call of `assemble` by what came of it.
+    /// Counts the result of a call of `assemble`.
     template <class Scalar, int n, int m>
     constexpr void add(const AssembledSample<Scalar, n, m>& result) noexcept {
         const auto is_bridged = [](ValueOrigin origin) { return origin == ValueOrigin::bridged; };

@@ -10,24 +10,24 @@
 
 namespace dfdyn::hal {
 
-/// A moment at which a sample may be assembled.
+/// Event at which a sample may be assembled.
 struct SampleTrigger {
     enum class Kind : std::uint8_t {
         none,
-        sync, ///< a SYNC came: the values measured at the one before are complete
+        sync, ///< a SYNC: the values measured at the SYNC before it are complete
         set   ///< every joint and the output have new measurements since the last set
     };
     Kind kind = Kind::none;
     std::int64_t instant_ns = 0;
 };
 
-/// Finds the moments of an arm of n joints: SYNCs, and complete sets. O(n) per frame.
+/// Detects the sample times of an arm of n joints: SYNCs, and complete sets. O(n) per frame.
 template <int n>
 class SampleTriggerWatch {
   public:
     explicit constexpr SampleTriggerWatch(Extent<n> joints) noexcept : joints_(joints) {}
 
-    /// A SYNC with this stamp; every drive reports the same one.
+    /// Takes the stamp of a SYNC. Each drive reports the same one; only the first report counts.
     constexpr SampleTrigger synchronised(std::int64_t stamp_ns) noexcept {
         const bool again = synchronised_ && stamp_ns == sync_ns_;
         if (again) {
@@ -37,16 +37,16 @@ class SampleTriggerWatch {
         const std::int64_t before_ns = sync_ns_;
         synchronised_ = true;
         sync_ns_ = stamp_ns;
-        const bool ran_back = stamp_ns < before_ns; // so that the time of the one before is not known
+        const bool ran_back = stamp_ns < before_ns; // the time of the one before is unknown
         return first || ran_back ? SampleTrigger{} : SampleTrigger{SampleTrigger::Kind::sync, before_ns};
     }
 
-    /// A new position of a joint.
+    /// Notes a new position of a joint.
     constexpr void measured(std::size_t joint) noexcept { seen_[joint] = true; }
 
     /// Drops a set that is not complete at `now_ns`, for a caller that does not wait for lost frames: its
-    /// joints, and any output measured until then. Half an output that was lost is known only from the next
-    /// one's frames, and does not complete their set. Returns whether the dropped set contained a joint.
+    /// joints, and any output measured until then. The loss of half an output is detected only when the next
+    /// output arrives; that half does not complete a set. Returns true if the dropped set contained a joint.
     constexpr bool drop_set(std::int64_t now_ns) noexcept {
         const bool any = std::any_of(seen_.begin(), seen_.begin() + joints_, [](bool seen) { return seen; });
         seen_ = {};
@@ -54,7 +54,7 @@ class SampleTriggerWatch {
         return any;
     }
 
-    /// A moment if all joints and the output, measured at `output_ns`, are new.
+    /// Returns a trigger if all joints and the output, measured at `output_ns`, are new.
     constexpr SampleTrigger completed(std::int64_t output_ns) noexcept {
         const bool joints =
             std::all_of(seen_.begin(), seen_.begin() + joints_, [](bool seen) { return seen; });
@@ -71,7 +71,7 @@ class SampleTriggerWatch {
     PerJoint<bool, n> seen_{};
     bool synchronised_ = false;
     std::int64_t sync_ns_ = 0;
-    std::int64_t set_ns_ = std::numeric_limits<std::int64_t>::min(); ///< instant of the last set
+    std::int64_t set_ns_ = std::numeric_limits<std::int64_t>::min(); ///< sample time of the last set
 };
 
 } // namespace dfdyn::hal

@@ -14,44 +14,42 @@
 
 namespace dfdyn::hal {
 
-/// When samples are assembled.
+/// Schedule of the samples.
 struct SamplerConfig {
-    bool timer = true;            ///< at the period; else at the moments of the arm
+    bool timer = true;            ///< true: periodic; false: at the triggers of the arm
     std::int64_t period_ns = 0;   ///< of the samples
-    std::int64_t delay_ns = 0;    ///< of a timer's samples behind the time at which they are assembled
-    std::int64_t patience_ns = 0; ///< after the last moment; then the period calls for samples; at least it
+    std::int64_t delay_ns = 0;    ///< from the time of a periodic sample to its assembly
+    std::int64_t patience_ns = 0; ///< without a trigger, before samples are periodic; at least the period
 };
 
-/// Makes the samples of a stream of frames when they are due. Time comes from the frames' stamps (LogClock),
-/// so that the same frames with the same stamps give the same samples, bit for bit, from a bus and from a
+/// Assembles the samples of a stream of frames when they are due. Time comes from the frames' stamps
+/// (LogClock). So the same frames with the same stamps give bit-identical samples from a bus and from a
 /// recording.
 ///
-/// A frame that does not show the clock (ClockWitness) goes through at the time of the one before.
-/// Up to `most_strays` frames whose stamps are ahead are held. Where time returns they are left out; they are
-/// taken where one more frame continues from them, or is further ahead.
-/// A sample with a value that is missing waits for the next value, from which it is interpolated, or until it
-/// cannot come any more; those after it wait with it, at most `capacity` of them. Where no moment comes,
-/// samples are assembled at the period instead, and say why they are incomplete; for `longest_silence_ns` at
-/// most after the last frame. Their instants follow that of the last moment, one period after another, so
-/// that moments that are further apart than the patience still come after them. A moment that does not is
-/// late: it makes no sample.
+/// A frame whose stamp is not from the devices' clock (ClockWitness) is taken at the time of the frame
+/// before. Up to `most_strays` frames with stamps that are ahead are held. They are dropped if the next stamp
+/// is back to normal, and taken if one more frame continues from them or is further ahead. A sample with a
+/// missing value waits for the next value, from which it is interpolated, or until that can no longer come.
+/// Later samples wait with it, at most `capacity`. Without triggers, samples are periodic and report why they
+/// are incomplete, for at most `longest_silence_ns` after the last frame. They continue the last trigger's
+/// sample times with the period, so that later triggers still follow them. A trigger that does not is late
+/// and makes no sample.
 ///
-/// `Arm`: `take(frame, now)` returns the instant that can be assembled, if any; `update`, `pending` and
-/// `assemble` are those of SampleAssembly. `on_sample(assembled, now_ns)` gets every sample, in order of
-/// time.
+/// `Arm`: `take(frame, now)` returns a sample time if one is complete; `update`, `pending` and `assemble` are
+/// those of SampleAssembly. `on_sample(assembled, now_ns)` receives every sample in order of time.
 template <class Arm, std::size_t capacity = 16>
 class Sampler {
   public:
     static constexpr std::int64_t longest_silence_ns = 1'000'000'000;
-    /// In a row. A choice between two costs: each more keeps the first frames after every silence waiting for
-    /// one frame more, and three are less than what an arm with a sensor sends in a period. With fewer,
-    /// frames that an adapter stamps together move the clock. Four stamps that are ahead alike are believed.
+    /// Largest number of consecutive held frames. Each one more delays the first frames after a silence by
+    /// one frame; three are fewer than an arm with a sensor sends in a period. With fewer, frames that an
+    /// adapter stamps together would move the clock. Four stamps that are equally far ahead are accepted.
     static constexpr std::size_t most_strays = 3;
 
     explicit constexpr Sampler(const SamplerConfig& config) noexcept
         : config_(config), delay_ns_(config.delay_ns) {}
 
-    /// The next frame; state and counters of its bus as they are with it.
+    /// Takes the next frame, with the state and the counters of its bus at that time.
     template <class OnSample>
     void take(Arm& arm, const Frame& frame, BusState state, const BusCounters& counters,
               OnSample&& on_sample) {
@@ -94,20 +92,20 @@ class Sampler {
         }
     }
 
-    /// The time of the first frame, and of the last; 0 before.
+    /// Return the time of the first frame, and of the last; 0 before.
     [[nodiscard]] constexpr std::int64_t start_ns() const noexcept { return start_ns_; }
     [[nodiscard]] constexpr std::int64_t now_ns() const noexcept { return now_ns_; }
     [[nodiscard]] constexpr bool started() const noexcept { return started_; }
     [[nodiscard]] constexpr const LogClock& clock() const noexcept { return clock_; }
 
-    /// Frames that were left out because their stamps were ahead of those after them.
+    /// Returns the number of frames dropped because their stamps were ahead of those after them.
     [[nodiscard]] constexpr std::uint64_t strays() const noexcept { return strays_; }
 
-    /// Moments that came too late for a sample.
+    /// Returns the number of triggers that came too late for a sample.
     [[nodiscard]] constexpr std::uint64_t late_moments() const noexcept { return late_moments_; }
 
   private:
-    /// A frame, and state and counters of the bus with it.
+    /// A frame with the state and the counters of its bus.
     struct Held {
         Frame frame;
         BusState state = BusState::active;
@@ -118,7 +116,7 @@ class Sampler {
         return (place + 1) % capacity;
     }
 
-    /// Decides by the stamp of the next frame which of the frames that are held are left out or taken.
+    /// Decides by the stamp of the next frame which of the held frames are dropped or taken.
     template <class OnSample>
     void settle(Arm& arm, std::int64_t stamp_ns, OnSample& on_sample) {
         if (holding_ == 0) {
@@ -137,7 +135,7 @@ class Sampler {
         }
     }
 
-    /// Takes the first of the frames that are held.
+    /// Takes the first `count` held frames.
     template <class OnSample>
     void let_go(Arm& arm, std::size_t count, OnSample& on_sample) {
         for (std::size_t i = 0; i < count; ++i) {
@@ -180,22 +178,22 @@ class Sampler {
         due_ns_ = stamp_ns + (config_.timer ? config_.period_ns : config_.patience_ns);
     }
 
-    /// What time alone makes due before `time_ns`.
+    /// Assembles the periodic samples that are due before `time_ns`.
     template <class OnSample>
     void assemble_before(Arm& arm, std::int64_t time_ns, OnSample& on_sample) {
         for (; due_ns_ < time_ns; due_ns_ += config_.period_ns) {
             release(arm, due_ns_, on_sample);
             const std::int64_t instant_ns = due_ns_ - delay_ns_;
-            if (!newest_by_time_ || instant_ns > *newest_by_time_) { // a late moment has set the delay
+            if (!newest_by_time_ || instant_ns > *newest_by_time_) { // the delay came from a late trigger
                 newest_by_time_ = instant_ns;
                 wait(arm, instant_ns, due_ns_, on_sample);
             }
         }
     }
 
-    /// Leaves out what a long silence made due.
+    /// Skips the samples that were due during a long silence.
     constexpr void leave_out_before(std::int64_t time_ns) noexcept {
-        if (due_ns_ < time_ns) { // by more than int64 holds, where stamps are of both ends of it
+        if (due_ns_ < time_ns) { // can exceed int64 for stamps of opposite signs
             const auto late_ns = static_cast<std::uint64_t>(wrapping_difference(time_ns, due_ns_));
             const auto past_ns =
                 static_cast<std::int64_t>(late_ns % static_cast<std::uint64_t>(config_.period_ns));
@@ -203,7 +201,7 @@ class Sampler {
         }
     }
 
-    /// Assembles an instant now, or after those that wait.
+    /// Assembles a sample now, or after the waiting ones.
     template <class OnSample>
     void wait(Arm& arm, std::int64_t instant_ns, std::int64_t now_ns, OnSample& on_sample) {
         if (waiting_ == 0 && !arm.pending(instant_ns, now_ns)) {
@@ -219,7 +217,7 @@ class Sampler {
         ++waiting_;
     }
 
-    /// Assembles those that wait and need to no longer.
+    /// Assembles the waiting samples that are complete or can no longer become complete.
     template <class OnSample>
     void release(Arm& arm, std::int64_t now_ns, OnSample& on_sample) {
         for (; waiting_ > 0 && !arm.pending(instant_[first_], now_ns); --waiting_, first_ = next(first_)) {
@@ -232,11 +230,11 @@ class Sampler {
     LogClock clock_;
     bool started_ = false;
     std::int64_t start_ns_ = 0;
-    std::int64_t now_ns_ = 0;                      ///< of the last frame, by that clock
-    std::int64_t due_ns_ = 0;                      ///< of the next sample that time alone calls for
-    std::int64_t delay_ns_ = 0;                    ///< of such a sample's instant
-    std::optional<std::int64_t> newest_by_time_;   ///< the last instant of such a sample
-    std::array<std::int64_t, capacity> instant_{}; ///< of the samples that wait, a ring
+    std::int64_t now_ns_ = 0;   ///< time of the last frame
+    std::int64_t due_ns_ = 0;   ///< time of the next periodic sample
+    std::int64_t delay_ns_ = 0; ///< from the sample time of a periodic sample to its assembly
+    std::optional<std::int64_t> newest_by_time_;   ///< sample time of the last periodic sample
+    std::array<std::int64_t, capacity> instant_{}; ///< of the waiting samples; ring buffer
     std::size_t first_ = 0;
     std::size_t waiting_ = 0;
     std::array<Held, most_strays> held_{}; ///< frames whose stamps are ahead

@@ -10,20 +10,20 @@
 namespace dfdyn::hal {
 
 struct TrackConfig {
-    std::int64_t max_age_ns; ///< for how long a value is held; neighbours further apart are a gap
+    std::int64_t max_age_ns; ///< largest age of a held value; consecutive values further apart are a gap
     std::int64_t latency_ns; ///< from the measurement to the stamp of its frame
     StartupGate::Config qualification;
-    std::int64_t period_ns = 0; ///< in which a source sends; 0: not known, so that nothing is ever missing
-    std::int64_t jitter_ns = 0; ///< largest difference of the lateness of two frames
+    std::int64_t period_ns = 0; ///< of the source; 0: unknown, so that no value is ever missing
+    std::int64_t jitter_ns = 0; ///< largest difference between the delays of two frames
 };
 
-/// How the value of an instant came about.
+/// Origin of the value at a sample time.
 enum class ValueOrigin : std::uint8_t {
     none,
-    measured,     ///< at this very instant
+    measured,     ///< at exactly this time
     interpolated, ///< between two consecutive measurements
-    bridged,      ///< between two measurements that have a missing one between them
-    held          ///< from the last measurement, because the next is not due yet
+    bridged,      ///< between two measurements with a missing one between them
+    held          ///< from the last measurement, because the next one is not due yet
 };
 
 /// Names of the reasons, which differ between positions and outputs.
@@ -41,13 +41,13 @@ inline constexpr TrackReasons output_reasons{Reason::waiting_for_output, Reason:
                                              Reason::output_missing, Reason::output_gap,
                                              Reason::output_out_of_range};
 
-/// The recent past of one source (a joint's position, its effort, a wrench), gated, and its value at any
-/// instant in it.
+/// The checked recent values of one source (position, effort or wrench), and its value at any time in this
+/// history.
 ///
-/// A value that was due and has not come is missing. It is never replaced by the one before: it is refused
-/// until the next one comes, and then interpolated if the two are at most `max_age` apart. A value that is
-/// not due yet is held from the last one, for at most a period and the jitter; a closed loop that asks for
-/// the newest instant so gets one without waiting.
+/// A value that was due and has not come is missing. It is never replaced by the one before. There is no
+/// value until the next one comes; then it is interpolated if the two are at most `max_age` apart. If the
+/// next value is not due yet, the last one is held, at most for a period and the jitter. So a closed loop
+/// that requests the newest time gets a value without waiting.
 template <int values, int capacity>
 class Track {
   public:
@@ -59,9 +59,10 @@ class Track {
           reasons_(reasons), staleness_(config.max_age_ns), gap_(config.max_age_ns), range_(ranges),
           qualification_(config.qualification) {}
 
-    /// Takes a reading. `zero`: its raw values are all 0. A reading with a reason is kept as a hole. One that
-    /// is not later than the last is counted and changes nothing; but two different ones of one instant make
-    /// a hole of both, because one of them is of another instant, or of another sender.
+    /// Takes a reading. `zero`: its raw values are all 0. A reading with a reason is stored without a value.
+    /// A reading that is not later than the last is counted and otherwise ignored. If its value differs and
+    /// its stamp is the same, the last one becomes invalid too, because one of the two has a wrong stamp or
+    /// sender.
     constexpr void push(std::int64_t stamp_ns, Reason reason, const Values& value, bool zero) noexcept {
         Measurement<values> entry{stamp_ns - latency_ns_, reason, value};
         if (overtaken(entry)) {
@@ -79,16 +80,16 @@ class Track {
         history_.push(entry);
     }
 
-    /// Whether a reading with this stamp is later than the last.
+    /// Returns true if a reading with this stamp is later than the last.
     [[nodiscard]] constexpr bool is_later(std::int64_t stamp_ns) const noexcept {
         return history_.empty() || stamp_ns - latency_ns_ > history_.newest().stamp_ns;
     }
 
-    /// The source is not itself: it must qualify again.
+    /// Requires the source to qualify again, after a fault.
     constexpr void disqualify() noexcept { qualification_.restart(); }
 
-    /// Returns the values at an instant from the measurements until `now_ns`; see the class. `stamp_ns` is
-    /// the stamp of the newest measurement used. O(capacity).
+    /// Returns the values at a time, from the measurements until `now_ns`; see the class. `stamp_ns` of the
+    /// result is the stamp of the newest measurement used. O(capacity).
     constexpr Measurement<values> at(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
         const auto [before, after] = history_.around(instant_ns);
         Measurement<values> result;
@@ -105,7 +106,7 @@ class Track {
         return result;
     }
 
-    /// How `at` came about where it has no reason. O(capacity).
+    /// Returns the origin of the result of `at`, if that is valid. O(capacity).
     [[nodiscard]] constexpr ValueOrigin origin(std::int64_t instant_ns) const noexcept {
         const auto [before, after] = history_.around(instant_ns);
         if (before == nullptr) {
@@ -122,7 +123,7 @@ class Track {
         return bridged ? ValueOrigin::bridged : ValueOrigin::interpolated;
     }
 
-    /// Whether the value of this instant is missing and may yet be interpolated.
+    /// Returns true if the value at this time is missing and may still be interpolated.
     [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
         const auto [before, after] = history_.around(instant_ns);
         return before != nullptr && after == nullptr && before->reason == Reason::ok &&
@@ -130,7 +131,7 @@ class Track {
                now_ns - latency_ns_ - before->stamp_ns <= staleness_.max_age_ns() + period_ns_;
     }
 
-    /// Whether anything has come, and when the newest of it was measured.
+    /// Return true if a measurement exists, and the time of the newest one.
     [[nodiscard]] constexpr bool heard() const noexcept { return !history_.empty(); }
     [[nodiscard]] constexpr std::int64_t newest_ns() const noexcept { return history_.newest().stamp_ns; }
 
@@ -140,7 +141,7 @@ class Track {
     [[nodiscard]] constexpr const RangeGate<values>& range() const noexcept { return range_; }
     [[nodiscard]] constexpr const StartupGate& qualification() const noexcept { return qualification_; }
 
-    /// Readings that came with a stamp not later than the last.
+    /// Returns the number of readings with a stamp not later than the last.
     [[nodiscard]] constexpr std::uint64_t not_later() const noexcept { return not_later_; }
 
   private:
@@ -158,7 +159,7 @@ class Track {
         return true;
     }
 
-    /// Whether the value after the one at `before_ns` was due: by now, and at the instant.
+    /// Returns true if the value after the one at `before_ns` was due, by now or by the sample time.
     [[nodiscard]] constexpr bool is_missing(std::int64_t before_ns, std::int64_t instant_ns,
                                             std::int64_t now_ns) const noexcept {
         const std::int64_t due_ns = before_ns + period_ns_ + period_ns_ / 8 + jitter_ns_;

@@ -13,7 +13,7 @@
 
 namespace dfdyn::hal {
 
-/// An arm's output that a force/torque sensor measures: from its frames to gated wrenches.
+/// The output of an arm that a force/torque sensor measures: frames to checked wrenches.
 template <WrenchSource Source, int capacity>
 class WrenchOutput {
   public:
@@ -33,7 +33,7 @@ class WrenchOutput {
 
     [[nodiscard]] static constexpr Extent<outputs> size() noexcept { return {}; }
 
-    /// Decodes a frame and takes it; a wrench may come with it.
+    /// Decodes a frame, and takes the wrench that it completes.
     constexpr Decoded take(const Frame& frame) noexcept {
         const Decoded decoded = source_.decode(frame);
         if (decoded.kind != Decoded::Kind::part) {
@@ -56,7 +56,7 @@ class WrenchOutput {
         return decoded;
     }
 
-    /// Joints do not measure a wrench.
+    /// Ignores values of joints, which do not measure a wrench.
     constexpr void take(const JointValue& /*value*/, double /*position_rad*/) noexcept {}
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept { return source_.claims(id); }
@@ -74,10 +74,10 @@ class WrenchOutput {
     [[nodiscard]] constexpr bool heard() const noexcept { return track_.heard(); }
     [[nodiscard]] constexpr std::int64_t newest_ns() const noexcept { return track_.newest_ns(); }
 
-    /// Of its measurements; 0: not known.
+    /// Returns the period of its measurements; 0: unknown.
     [[nodiscard]] constexpr std::int64_t period_ns() const noexcept { return track_.period_ns(); }
 
-    /// Frames were lost: a pending half is forgotten.
+    /// Discards a pending half after a loss of frames.
     constexpr void lost() noexcept { pairing_.reset(); }
 
     /// The sensor's decoder, with its requests and the values that the sensor reported, such as full scales.
@@ -88,7 +88,7 @@ class WrenchOutput {
     [[nodiscard]] constexpr const FrozenWrenchGate<6>& frozen() const noexcept { return frozen_; }
 
   private:
-    /// The gates see every reading of the sensor; the first that objects is the reason.
+    /// Passes a reading to all gates, also if one rejects it. The first rejection is the reason.
     constexpr void push(const WrenchReading& reading) noexcept {
         const bool zero = std::ranges::all_of(reading.raw, [](std::int32_t raw) { return raw == 0; });
         const bool flagged = reading.reason == Reason::output_saturated;
@@ -108,7 +108,7 @@ class WrenchOutput {
             jump_.jumps(reading.value, pairing_.first().stamp_ns)) {
             reason = Reason::output_jump;
         }
-        if (zero) { // all six are, to the last bit: a sensor that has just come up
+        if (zero) { // all six, to the last bit: the sensor has just started
             track_.disqualify();
         }
         track_.push(pairing_.first().stamp_ns, reason, reading.value, zero);
