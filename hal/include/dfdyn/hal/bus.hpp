@@ -36,7 +36,7 @@ struct BusCounters {
     std::uint64_t bus_off = 0;         ///< times the controller went bus-off
     std::uint64_t restarted = 0;       ///< times the controller restarted after bus-off
     std::uint64_t interface_down = 0;  ///< times the interface went down or was removed
-    std::uint64_t truncated = 0;       ///< reads whose size is not that of a frame
+    std::uint64_t truncated = 0;       ///< reads of a wrong size
     std::uint64_t saturated_drains = 0; ///< drains that reached their limit with frames left to read
 };
 

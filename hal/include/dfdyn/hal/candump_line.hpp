@@ -73,7 +73,7 @@ constexpr std::string_view expected(CandumpFault fault) noexcept {
 
 /// Result of reading one line of a candump log.
 struct CandumpLine {
-    /// What a line contains.
+    /// Content of a line.
     enum class Kind : std::uint8_t {
         nothing,  ///< an empty line, or a comment that starts with #
         frame,    ///< `frame`

@@ -15,7 +15,7 @@ enum class Origin : std::uint8_t {
     this_socket, ///< this bus object itself (on Linux: MSG_CONFIRM)
 };
 
-/// Which clock stamped a frame.
+/// The clock that stamped a frame.
 enum class StampSource : std::uint8_t {
     hardware, ///< the controller, at reception
     kernel,   ///< the operating system, in its interrupt handler

@@ -27,7 +27,7 @@ namespace dfdyn::hal {
 /// - by SYNC: `SampleTrigger::sync`; its instant is the SYNC at which the complete values were measured;
 /// - by a timer: `now - delay`. With a delay of the output's latency and one period of the slowest source all
 ///   values are interpolated; with a shorter delay predictions are more recent, and values are held;
-/// - by the last frame of a set: `SampleTrigger::set`; its instant is that of the output's measurement.
+/// - by the last frame of a set: `SampleTrigger::set`; its instant is the time of the output's measurement.
 /// The latency from the measurement to the frame is subtracted from each stamp first. An output is valid in
 /// at most one sample for each of its measurements.
 ///
@@ -42,7 +42,7 @@ class SampleAssembly {
   public:
     using Assembled = AssembledSample<Scalar, n, Output::outputs>; ///< sample and report
     using Sample = decltype(Assembled::sample);                    ///< for `Estimator::tick`
-    using Report = decltype(Assembled::report);                    ///< why the sample is as it is
+    using Report = decltype(Assembled::report);                    ///< validity of the sample's values
 
     /// Boards, clocks and limits of an arm.
     struct Config {
@@ -118,8 +118,8 @@ class SampleAssembly {
         }
     }
 
-    /// Drops a set that is not complete at `now_ns`. The next set consists of what is measured later. Returns
-    /// whether the dropped set contained a joint.
+    /// Drops a set that is not complete at `now_ns`. The next set contains later measurements only. Returns
+    /// true if the dropped set contained a joint.
     constexpr bool drop_set(std::int64_t now_ns) noexcept { return moments_.drop_set(now_ns); }
 
     /// Returns true if a value of this instant is missing that the next frames may supply. It becomes false

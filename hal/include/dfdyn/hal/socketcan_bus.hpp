@@ -28,7 +28,7 @@ struct IdFilter {
     bool extended = false;  ///< 29-bit identifiers
 };
 
-/// What a `SocketCanBus` opens.
+/// Options of a `SocketCanBus`.
 struct SocketCanOptions {
     std::string interface;              ///< such as `can0`
     std::vector<IdFilter> filters = {}; ///< empty: all frames; error frames are received in any case

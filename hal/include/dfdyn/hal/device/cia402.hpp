@@ -228,7 +228,7 @@ class Cia402Drive {
         }
     }
 
-    /// Reason for a value that may be the answer to another SYNC.
+    /// Returns the reason for a value that may answer another SYNC.
     [[nodiscard]] static constexpr Reason refused(Reason reason) noexcept {
         return reason == Reason::ok ? Reason::sync_unknown : reason;
     }

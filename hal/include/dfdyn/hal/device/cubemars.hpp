@@ -11,10 +11,10 @@ namespace dfdyn::hal {
 /// mit_can.py (bb8d071).
 ///
 /// Byte 0 of a feedback is the motor number, byte 6 the temperature (°C), byte 7 an error: 0 none. Old
-/// firmware sends six bytes, without either. All motors answer on identifier 0, unless it was changed. The
-/// torque is the current times a constant, without friction: TMotorCANControl has measured 0.115 N·m/A for
-/// the AK80-9, 26 % more than the maker's 0.091. Values carry `device_fault` with an error, also one that no
-/// document lists.
+/// firmware sends six bytes, without temperature and error. All motors answer on identifier 0, unless it was
+/// changed. The torque is the current times a constant, without friction. TMotorCANControl measured 0.115
+/// N·m/A for the AK80-9, 26 % more than the maker's 0.091. Values carry `device_fault` with any error,
+/// documented or not.
 struct CubemarsMitProtocol : PlainMitProtocol {
     [[nodiscard]] static constexpr bool has_length(int length) noexcept { return length == 6 || length == 8; }
     [[nodiscard]] static constexpr Reason condition(const Frame& feedback) noexcept {
@@ -32,9 +32,8 @@ static_assert(JointSource<CubemarsMitMotor>);
 
 /// A CubeMars (T-Motor) AK motor in servo mode. Layout: neurobionics/TMotorCANControl, servo_can.py
 /// (bb8d071). 29-bit identifiers: packet (bits 28 … 8), motor (7 … 0); big-endian. By packet:
-/// - 0x29, 8 bytes, feedback: position i16 (0.1 °), speed i16 (10 electrical revolutions per minute), current
-/// i16
-///   (0.01 A), temperature i8 (°C), error u8. Some firmware has another packet number or none.
+/// - 0x29, 8 bytes, feedback: position i16 (0.1 °), speed i16 (10 electrical rpm), current i16 (0.01 A),
+///   temperature i8 (°C), error u8. Some firmware has another packet number or none.
 /// - 0 … 8, to the motor: 1 is a current, i32 (0.001 A).
 ///
 /// Values carry `encoder_fault` with error 5, `device_fault` with any other. Positions end at ±3200 °.
@@ -44,10 +43,10 @@ class CubemarsServo {
 
     struct Config {
         int motor_id = 1;                   ///< 0 … 255
-        int packet = -1;                    ///< of the feedback; -1: any that is not a command
+        int packet = -1;                    ///< of the feedback; -1: any packet that is not a command
         int joint = 0;                      ///< joint of the arm, from 0
         double pole_pairs = 21;             ///< of the motor: electrical per mechanical revolutions
-        double gear_ratio = 9;              ///< motor revolutions for one of the position's
+        double gear_ratio = 9;              ///< motor revolutions per revolution of the reported position
         double newton_metre_per_ampere = 0; ///< of the motor's output; 0: efforts are currents (A)
         double motor_per_joint = 1; ///< ratio of a transmission behind the motor's own gear, with its sign
         double zero_rad = 0;        ///< position of the joint where the motor reports 0
@@ -57,7 +56,7 @@ class CubemarsServo {
 
     [[nodiscard]] constexpr const Config& config() const noexcept { return config_; }
 
-    /// All its identifiers have 29 bits.
+    /// Returns false, because all its identifiers have 29 bits.
     [[nodiscard]] constexpr bool claims(std::uint32_t /*id*/) const noexcept { return false; }
 
     [[nodiscard]] constexpr bool concerns(const Frame& frame) const noexcept {
@@ -132,7 +131,7 @@ class CubemarsServo {
         return load_big<std::int32_t>(frame.data.data()) * effort_step() * command_step;
     }
 
-    /// Returns what `frame` commands this motor.
+    /// Returns the kind of command in `frame`.
     [[nodiscard]] constexpr MotorCommand command(const Frame& frame) const noexcept {
         if (!is_to_motor(frame) || frame.remote || frame.fd || packet(frame) > last_command) {
             return MotorCommand::none;

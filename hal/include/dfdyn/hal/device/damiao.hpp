@@ -10,18 +10,17 @@ namespace dfdyn::hal {
 ///
 /// - Byte 0 of a feedback is state and motor id (nibbles), bytes 6 and 7 are the temperatures (°C) of
 ///   transistors and rotor. `feedback_id` is register MST_ID, `motor_id` (1 … 15) register ESC_ID.
-/// - Answers about registers come on `feedback_id`, too: motor id u16, 0x33 (read), 0x55 (written) or 0xAA
+/// - Answers about registers also come on `feedback_id`: motor id u16, 0x33 (read), 0x55 (written) or 0xAA
 ///   (saved), register number, value (float), little-endian. Registers 21, 22 and 23 are the maxima of
-///   position, velocity and torque. The first byte is the motor id alone, like that of the feedback of a
-///   disabled motor; the next two bytes distinguish them.
+///   position, velocity and torque. The first byte is the motor id, as in the feedback of a disabled motor;
+///   the next two bytes distinguish the two.
 /// - 0x7FF, to all motors: register access, or 0xCC, which requests a feedback.
 ///
-/// Two widely used libraries disagree about the maxima that motors have on delivery: LeRobot (06f4bd2) has
-/// 8 rad/s for the DM4340, openarm_can (98666042) 10 rad/s; for the DM3507 they have 30 and 50 rad/s, 10 and
-/// 5 N·m.
+/// Two widely used libraries disagree about the default maxima. LeRobot (06f4bd2) has 8 rad/s for the DM4340,
+/// openarm_can (98666042) 10 rad/s. For the DM3507 they have 30 and 50 rad/s, 10 and 5 N·m.
 ///
-/// Values carry `device_not_operational` while the motor is disabled, and `device_fault` in any other state
-/// except enabled, including states that no document lists.
+/// Values carry `device_not_operational` while the motor is disabled. They carry `device_fault` in any other
+/// state except enabled, documented or not.
 struct DamiaoProtocol {
     [[nodiscard]] static constexpr unsigned motor_of(const Frame& frame) noexcept {
         return frame.data[0] & 0xFU;

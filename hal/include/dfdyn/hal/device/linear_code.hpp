@@ -32,7 +32,7 @@ constexpr LinearCode big_endian_code(int bit, int bits) noexcept {
     return {{.start_bit = bit / 8 * 8 + 7 - bit % 8, .length = bits, .byte_order = ByteOrder::motorola}};
 }
 
-/// Maxima of a motor's codes, and where its joint is.
+/// Maxima of a motor's codes, and its position in the arm.
 struct LinearScale {
     int joint = 0;              ///< joint of the arm, from 0
     double position_max = 0;    ///< rad

@@ -10,14 +10,14 @@
 
 namespace dfdyn::hal {
 
-/// What a motor reports about one of its maxima. `maximum`: 0 position, 1 velocity, 2 torque.
+/// A maximum that a motor reports. `maximum`: 0 position, 1 velocity, 2 torque.
 struct ReportedMaximum {
     int maximum = 0;
     double value = 0;
 };
 
-/// Base of protocols without answers other than feedback, without a state, and with the MIT mode's commands
-/// alone.
+/// Base of protocols with feedback as the only answer, without a state, and with the commands of MIT mode
+/// only.
 struct PlainMitProtocol {
     [[nodiscard]] static constexpr unsigned motor_of(const Frame& frame) noexcept { return frame.data[0]; }
     [[nodiscard]] static constexpr bool has_length(int length) noexcept { return length == 8; }
@@ -34,7 +34,7 @@ struct PlainMitProtocol {
     }
 };
 
-/// What differs between the motors with MIT mode, all static:
+/// Differences between the motors with MIT mode, all static:
 /// - `motor_of(frame)`: the motor number in byte 0 of an answer.
 /// - `has_length(length)`: lengths of a feedback.
 /// - `condition(feedback)`: the motor's own state; ok if the protocol has none.
@@ -63,17 +63,15 @@ concept MitProtocol = requires(const Frame& frame, Frame& sent, unsigned motor, 
 /// A motor with the frames of the MIT Cheetah's motor controller ("MIT mode"), which many makers use. Frames
 /// by standard identifier, on classic CAN or CAN FD, big-endian:
 /// - `feedback_id`, feedback: byte 0 motor number (see `Protocol`), position u16, velocity u12, torque u12,
-/// bytes
-///   6 and 7 temperatures or state (see `Protocol`).
+///   bytes 6 and 7 temperatures or state (see `Protocol`).
 /// - `motor_id`, to the motor: position u16, velocity u12, kp u12, kd u12, torque u12; or seven bytes FF and
-/// FC
-///   (enable), FD (disable), FE (set zero), FB (clear faults).
+///   FC (enable), FD (disable), FE (set zero), FB (clear faults).
 ///
 /// Some firmware answers on `motor_id`. A command with a position near -position_max then looks like an
 /// answer.
 ///
-/// The maxima of the codes are not in the frames. If a motor reports another maximum than `Config`, the
-/// values that depend on it carry `full_scale_contradicted` until it reports the same.
+/// The frames do not contain the maxima of the codes. If a motor reports a maximum that differs from
+/// `Config`, the values that depend on it carry `full_scale_contradicted` until the two agree.
 ///
 /// A position at an end of its code carries `position_out_of_range`, a torque `output_saturated`.
 template <MitProtocol Protocol>
@@ -90,7 +88,7 @@ class MitMotor {
         double torque_max = 0;      ///< N·m
         double motor_per_joint = 1; ///< ratio of a transmission behind the motor's own gear, with its sign
         double zero_rad = 0;        ///< position of the joint where the motor reports 0
-        bool shared_feedback_id = false; ///< other motors answer on it, too; byte 0 tells them apart
+        bool shared_feedback_id = false; ///< other motors answer on it; byte 0 identifies them
         bool fd = false;                 ///< `encode` and `encode_torque` make CAN FD frames
     };
 
@@ -147,7 +145,7 @@ class MitMotor {
         return commanded_torque.value(frame, config_.torque_max) * config_.motor_per_joint;
     }
 
-    /// Returns what `frame` commands this motor.
+    /// Returns the kind of command in `frame`.
     [[nodiscard]] constexpr MotorCommand command(const Frame& frame) const noexcept {
         if (!has_id(frame, motor_id()) || frame.remote || frame.length != 8) {
             return Protocol::other_command(frame, motor_id());
@@ -178,8 +176,8 @@ class MitMotor {
         return has_id(frame, config_.feedback_id) || command(frame) != MotorCommand::none;
     }
 
-    /// Returns true for a frame on the identifier of feedback that is none, such as an answer about a
-    /// register.
+    /// Returns true for a frame on the identifier of the feedback that is not a feedback, such as an answer
+    /// about a register.
     [[nodiscard]] constexpr bool is_aside(const Frame& frame) const noexcept {
         return has_id(frame, config_.feedback_id) && Protocol::has_length(frame.length) &&
                !Protocol::is_feedback(frame, Protocol::motor_of(frame));

@@ -20,12 +20,11 @@ namespace dfdyn::hal {
 /// - 1 position: 1e-2, 1e-4, 1e-5 turns of the output; 2 velocity: 0.1, 2.5e-4, 1e-5 turns/s
 /// - 3 torque: 0.5, 0.01, 0.001 N·m; 15 fault: 1 … 95 is a fault, 96 and above a limit that is active
 ///
-/// A device only answers, and a reply contains what was asked, in any order and type. The registers above, in
-/// another order or in other types than before, are believed from their third reply on (MoteusLayouts). The
-/// most negative integer, or a float that is not a number, means "no value": `position_out_of_range`,
-/// `output_out_of_range`. Mode and fault hold until the next reply about them. Values carry
-/// `device_not_operational` while the device does not operate, `device_fault` in mode 1, with a fault, and in
-/// modes that no document lists.
+/// A reply contains the requested registers, in any order and type. If their order or types differ from
+/// before, they are trusted from the third such reply on (MoteusLayouts). The most negative integer, or a
+/// NaN, means "no value": `position_out_of_range`, `output_out_of_range`. Mode and fault remain valid until
+/// the next reply that contains them. Values carry `device_not_operational` while the device does not
+/// operate, and `device_fault` in mode 1, with a fault, and in undocumented modes.
 class MoteusController {
   public:
     static constexpr int joints = 1;
@@ -135,7 +134,7 @@ class MoteusController {
         return only_torque ? std::optional(torque * config_.motor_per_joint) : std::nullopt;
     }
 
-    /// Returns what `frame` commands this controller.
+    /// Returns the kind of command in `frame`.
     [[nodiscard]] constexpr MotorCommand command(const Frame& frame) const noexcept {
         if (!is_command(frame)) {
             return MotorCommand::none;
@@ -161,7 +160,7 @@ class MoteusController {
         return found;
     }
 
-    /// Returns true for a reply of this controller to another host than the described one.
+    /// Returns true for a reply of this controller to a different host than the configured one.
     [[nodiscard]] static constexpr bool is_reply_to_other(const Config& config, const Frame& frame) noexcept {
         return !frame.error && frame.fd && (frame.id & 0x8000U) == 0 &&
                frame.id >> 16U == static_cast<std::uint32_t>(config.prefix) &&

@@ -13,13 +13,13 @@
 
 namespace dfdyn::hal {
 
-/// Knows in which layouts a device replies: which of the registers 0 to 3 and 15, in which order and types.
-/// Others may change from reply to reply. A flipped bit in the header of a sub-frame makes another register
-/// of a value. So a layout counts from its third reply on, the first of all at once. Up to eight layouts
-/// count whatever their order. O(1).
+/// Detects corrupted replies by their layout: which of the registers 0 to 3 and 15, in which order and types.
+/// Other registers may change from reply to reply. A flipped bit in the header of a sub-frame assigns a value
+/// to a wrong register. So a layout is accepted from its third reply on, the first one immediately. Up to
+/// eight layouts are accepted in any order. O(1).
 class MoteusLayouts {
   public:
-    /// Accepts the layout of a reply, and returns whether it counts.
+    /// Takes the layout of a reply and returns true if it is accepted.
     constexpr bool take(std::uint32_t layout) noexcept {
         if (std::find(known_.begin(), known_.end(), layout) != known_.end()) {
             return true;
@@ -41,7 +41,7 @@ class MoteusLayouts {
   private:
     static constexpr std::uint32_t none = 0;
     std::array<std::uint32_t, 8> known_{};
-    std::array<std::uint32_t, 16> doubtful_{}; ///< two replies of each, where eight are sent in turn
+    std::array<std::uint32_t, 16> doubtful_{}; ///< two replies each of eight alternating layouts
     std::size_t next_known_ = 0;
     std::size_t next_doubtful_ = 0;
     bool any_ = false;
@@ -56,19 +56,19 @@ class MoteusLayouts {
 /// - 0x50 nothing.
 class MoteusSubframes {
   public:
-    /// What a sub-frame does with a register.
+    /// Kind of access of a sub-frame to a register.
     enum class Kind : std::uint8_t { end, write, read, reply, malformed, unknown };
 
     /// One register of a frame.
     struct Item {
-        Kind kind = Kind::end;    ///< what is done with it
+        Kind kind = Kind::end;    ///< kind of access
         std::uint32_t reg = 0;    ///< its number
         int type = 0;             ///< 0 int8, 1 int16, 2 int32, 3 float
         std::int32_t integer = 0; ///< of types 0 … 2
         float real = 0;           ///< of type 3
     };
 
-    /// Reads this frame, which must live as long.
+    /// Reads this frame, which must outlive the reader.
     explicit constexpr MoteusSubframes(const Frame& frame) noexcept : frame_(frame) {}
 
     /// Returns the next register that is written, read or replied. O(remaining bytes).
@@ -170,7 +170,7 @@ class MoteusSubframes {
     std::uint32_t at_ = 0;
     Kind kind_ = Kind::end;
     int type_ = 0;
-    std::uint32_t left_ = 0; ///< registers of the present sub-frame that were not returned
+    std::uint32_t left_ = 0; ///< remaining registers of the current sub-frame
     std::uint32_t register_ = 0;
 };
 

@@ -5,7 +5,7 @@
 
 namespace dfdyn::hal {
 
-/// What a host asks of a motor.
+/// Kind of a host's command to a motor.
 enum class MotorCommand : std::uint8_t {
     none,         ///< not a command to this motor
     control,      ///< a position, velocity, current or torque

@@ -12,25 +12,23 @@ namespace dfdyn::hal {
 
 /// Firmware of an AgileX Piper. Versions use the same identifiers with other contents.
 enum class PiperFirmware : std::uint8_t {
-    any,    ///< units of today; bits whose meaning changed on 2024-07-25 are ignored
-    rpm,    ///< old: speeds in revolutions per minute, currents in 0.1 A; these bits are ignored
+    any,    ///< current units; ignores the bits whose meaning changed on 2024-07-25
+    rpm,    ///< old: speeds in rpm, currents in 0.1 A; ignores these bits
     current ///< since 2024-07-25: the status bits are those of collision and stall
 };
 
 /// Two neighbouring joints of an AgileX Piper, which share a frame. Layout: agilexrobotics/piper_sdk
-/// (1dadd60), protocol_v2 and msg_v2. Classic frames of 8 bytes, big-endian; the arm sends without being
-/// asked. By identifier, with the first pair's numbers; k is the joint, 1 … 6:
-/// - 0x2A5 (0x2A6, 0x2A7): angles of two joints, i32, 0.001 °. The arm's three frames are not measured
-/// together.
-/// - 0x250 + k: speed i16 (0.001 rad/s), current i16 (0.001 A), position i32. The document has an unsigned
-/// current,
-///   the SDK decodes a signed one; so does this.
-/// - 0x260 + k: voltage, temperatures, status (byte 5), current on the supply, which is always 0 for the
-/// small
+/// (1dadd60), protocol_v2 and msg_v2. Classic frames of 8 bytes, big-endian, sent without a request. By
+/// identifier, with the first pair's numbers; k is the joint, 1 … 6:
+/// - 0x2A5 (0x2A6, 0x2A7): angles of two joints, i32, 0.001 °. The arm measures the three frames at different
+///   times.
+/// - 0x250 + k: speed i16 (0.001 rad/s), current i16 (0.001 A), position i32. The document specifies an
+///   unsigned current; the SDK decodes a signed one, and so does this class.
+/// - 0x260 + k: voltage, temperatures, status (byte 5), supply current, which is always 0 for the small
 ///   motors. Status bits: 0 voltage, 1 motor temperature, 2 current, 3 driver temperature, 5 driver fault, 6
 ///   enabled; 4 collision and 7 stall since 2024-07-25, sensor and homing before.
 /// - 0x2A1: state of the arm; byte 7 has a bit for each joint that does not communicate.
-/// - 0x159 + k, to the arm: as the MIT mode, but 8 bits of torque and a 4-bit sum of the other bytes (xor).
+/// - 0x159 + k, to the arm: like the MIT mode, but torque u8 and a 4-bit checksum (XOR of the other bytes).
 ///
 /// A second arm on the bus sends on 0x2B1 or 0x2C1 instead of 0x2A1, and on the seven that follow.
 ///
@@ -64,7 +62,7 @@ class PiperPair {
                half_of(id, config_.driver_id + status_offset) >= 0;
     }
 
-    /// The first pair also stands for what concerns the arm as a whole, and for its commands.
+    /// The first pair also represents the arm as a whole, and its commands.
     [[nodiscard]] constexpr bool concerns(const Frame& frame) const noexcept {
         if (frame.error || frame.extended) {
             return false;
@@ -139,7 +137,7 @@ class PiperPair {
         return commanded_torque.value(frame, config_.torque_command_max) * config_.sign[i];
     }
 
-    /// Returns what `frame` commands the arm.
+    /// Returns the kind of command in `frame`.
     [[nodiscard]] constexpr MotorCommand command(const Frame& frame) const noexcept {
         if (frame.error || frame.extended || frame.remote) {
             return MotorCommand::none;
@@ -199,7 +197,7 @@ class PiperPair {
     [[nodiscard]] constexpr std::uint32_t command_id(std::size_t half) const noexcept {
         return 0x15A + first() + static_cast<std::uint32_t>(half);
     }
-    /// Returns which joint of the pair has the identifier in the range of six from `base`; -1: none.
+    /// Returns the joint of the pair with this identifier in the six from `base`; -1: none.
     [[nodiscard]] constexpr int half_of(std::uint32_t id, std::uint32_t base) const noexcept {
         return id == base + first() ? 0 : id == base + first() + 1 ? 1 : -1;
     }
@@ -277,7 +275,7 @@ class PiperPair {
 
     Config config_;
     std::array<bool, 2> unheard_{};                       ///< the arm reports that it does not communicate
-    std::array<Reason, 2> drive_{Reason::ok, Reason::ok}; ///< as its last status; without any, it is ok
+    std::array<Reason, 2> drive_{Reason::ok, Reason::ok}; ///< from its last status; ok before the first
 };
 
 static_assert(JointSource<PiperPair>);

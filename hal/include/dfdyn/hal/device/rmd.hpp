@@ -16,7 +16,7 @@ enum class RmdDriver : std::uint8_t {
     v3  ///< V3 and V4
 };
 
-/// From which answer of an RMD motor its position is taken.
+/// Answer of an RMD motor from which its position is taken.
 enum class RmdPosition : std::uint8_t {
     multi_turn, ///< 0x92: 0.01 °
     encoder,    ///< 0x60: counts of the encoder over several turns
@@ -32,14 +32,14 @@ enum class RmdPosition : std::uint8_t {
 ///   (°).
 ///   - 0x9A: errors u16 at byte 6, 0: none.
 ///
-/// V2 drivers answer on 0x140 + motor, with a current of 33/2048 A per count, an encoder of 16384 counts per
-/// turn instead of the angle in 0x9C, and an angle of seven bytes in 0x92. Requests come on the same
-/// identifier: a request has zeros after its command, and a command has 0 where its answer has the
+/// V2 drivers answer on 0x140 + motor. Their current has 33/2048 A per count, 0x9C contains an encoder of
+/// 16384 counts per turn instead of the angle, and the angle of 0x92 has seven bytes. Requests come on the
+/// same identifier. A request has zeros after its command; a command has 0 where its answer has the
 /// temperature.
 ///
-/// An angle of 1 ° is too coarse for learning; 0x92 or 0x60 is needed. Values carry `device_fault` from an
-/// answer 0x9A with errors until two in a row without: a flipped bit makes 0x9A of 0x92, the answer with the
-/// angle. A negative angle then reads as errors that exclude each other, and is rejected.
+/// An angle of 1 ° is too coarse for learning; 0x92 or 0x60 is needed. Values carry `device_fault` after an
+/// answer 0x9A with errors, until two in a row without errors. A flipped bit can turn 0x92, the answer with
+/// the angle, into 0x9A. A negative angle then reads as errors that exclude each other, and is rejected.
 class RmdMotor {
   public:
     static constexpr int joints = 1;
@@ -51,7 +51,7 @@ class RmdMotor {
         RmdPosition position = RmdPosition::multi_turn;
         double counts_per_turn = 65536;     ///< of RmdPosition::encoder
         double newton_metre_per_ampere = 0; ///< of the motor's output; 0: efforts are currents (A)
-        double motor_per_joint = 1;         ///< the position's angle for one of the joint, with its sign
+        double motor_per_joint = 1;         ///< angle of the position per angle of the joint, with its sign
         double zero_rad = 0;                ///< position of the joint where the motor reports 0
     };
 
@@ -128,7 +128,7 @@ class RmdMotor {
         return load_little<std::int16_t>(frame.data.data() + 4) * effort_step();
     }
 
-    /// Returns what `frame` commands this motor.
+    /// Returns the kind of command in `frame`.
     [[nodiscard]] constexpr MotorCommand command(const Frame& frame) const noexcept {
         if (!has_id(frame, request_id()) || frame.remote || frame.fd || frame.length != 8 ||
             (config_.driver == RmdDriver::v2 && !is_request(frame))) {
@@ -214,7 +214,7 @@ class RmdMotor {
         return true;
     }
 
-    /// The angle of an answer 0x92.
+    /// Returns the angle of an answer 0x92.
     [[nodiscard]] constexpr Angle angle(const Frame& frame) const noexcept {
         if (config_.driver == RmdDriver::v3) {
             return {load_little<std::int32_t>(frame.data.data() + 4), 0.01 * degree};

@@ -11,16 +11,13 @@ namespace dfdyn::hal {
 /// belovictor/cybergear-docs, instructionmanual.md (17e371b), section 4.1. 29-bit identifiers: type (bits 28
 /// … 24), data (23 … 8), target (7 … 0). By type:
 /// - 2, feedback: mode (bits 23 and 22: 0 reset, 1 calibration, 2 run), faults (21 encoder not calibrated, 20
-/// Hall
-///   sensor, 19 magnetic encoder, 18 temperature, 17 current, 16 voltage), motor (15 … 8), host (7 … 0).
+///   Hall sensor, 19 magnetic encoder, 18 temperature, 17 current, 16 voltage), motor (15 … 8), host (7 … 0).
 ///   Angle, velocity, torque and temperature (0.1 °C), u16 big-endian.
 /// - 1, to the motor (bits 7 … 0): torque u16 in bits 23 … 8; angle, velocity, kp, kd, u16 big-endian.
 /// - 3 enable, 4 stop (first byte 1: clears faults), 6 set zero, 17 read and 18 write a parameter: index u16
-/// and
-///   value, little-endian, unlike the signals.
+///   and value, little-endian, unlike the signals.
 /// - 21, faults u32, in the bytes 0 … 3. The CyberGear manual has the host in bits 15 … 8 and the motor in 7
-/// … 0,
-///   later manuals of Robstride have them exchanged. Both are accepted.
+///   … 0; later manuals of Robstride exchange them. Both are accepted.
 ///
 /// The angle saturates at ±4π (`position_out_of_range`). Answers to another host are ignored: two programs
 /// that poll one motor get answers with different hosts. Positions and efforts carry `encoder_fault` or
@@ -47,7 +44,7 @@ class RobstrideMotor {
 
     [[nodiscard]] constexpr const Config& config() const noexcept { return config_; }
 
-    /// All its identifiers have 29 bits.
+    /// Returns false, because all its identifiers have 29 bits.
     [[nodiscard]] constexpr bool claims(std::uint32_t /*id*/) const noexcept { return false; }
 
     [[nodiscard]] constexpr bool concerns(const Frame& frame) const noexcept {
@@ -103,7 +100,7 @@ class RobstrideMotor {
         return (share * 2 * config_.torque_max - config_.torque_max) * config_.motor_per_joint;
     }
 
-    /// Returns what `frame` commands this motor.
+    /// Returns the kind of command in `frame`.
     [[nodiscard]] constexpr MotorCommand command(const Frame& frame) const noexcept {
         if (!is_private(frame) || frame.remote || frame.fd || target(frame) != motor_id()) {
             return MotorCommand::none;
@@ -130,7 +127,7 @@ class RobstrideMotor {
         }
     }
 
-    /// Returns true for a feedback of this motor to another host than the described one.
+    /// Returns true for a feedback of this motor to a different host than the configured one.
     [[nodiscard]] static constexpr bool is_feedback_to_other(const Config& config,
                                                              const Frame& frame) noexcept {
         return is_private(frame) && type(frame) == feedback_type &&
@@ -218,10 +215,10 @@ static_assert(JointSource<RobstrideMotor>);
 
 /// Robstride motors in MIT mode, as MitProtocol. Layout: huggingface/lerobot, robstride.py (024196a).
 ///
-/// Byte 0 of a feedback is the motor number alone, bytes 6 and 7 are one temperature, u16 big-endian, 0.1 °C,
-/// where Damiao has two of one byte. All motors answer on the identifier of the host, so that only byte 0
-/// tells them apart; LeRobot checks nothing else. The protocol has no state. FF … FB clears faults: LeRobot's
-/// `sync_read` sends it to read positions.
+/// Byte 0 of a feedback is the motor number. Bytes 6 and 7 are one temperature, u16 big-endian, 0.1 °C
+/// (Damiao: two of one byte). All motors answer on the identifier of the host, so that only byte 0 identifies
+/// them; LeRobot checks nothing else. The protocol has no state. FF … FB clears faults; LeRobot's `sync_read`
+/// sends it to read positions.
 struct RobstrideMitProtocol : PlainMitProtocol {
     /// 25 °C
     static constexpr void mark_sound(Frame& feedback, unsigned motor) noexcept {
