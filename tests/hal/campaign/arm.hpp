@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A kind of arm on a bus: what its devices send, and the product that receives it.
+// An arm on a bus: the frames of its devices, and the receiver under test.
 #pragma once
 
 #include "dfdyn/hal/assembly/position_track.hpp"
@@ -16,7 +16,7 @@ namespace dfdyn::tests {
 
 enum class Trigger { timer, set, sync };
 
-/// A sample of the product, whatever its type there.
+/// A sample of the receiver, independent of its type there.
 struct CampaignSample {
     std::int64_t time_ns = 0;
     bool valid = false, output_valid = false;
@@ -26,7 +26,7 @@ struct CampaignSample {
     hal::SampleReport<2, 6> report;
 };
 
-/// The product's assembly of an arm, as hal::Sampler takes it.
+/// The receiver's assembly of an arm, in the form that hal::Sampler takes.
 class ReceivingArm {
   public:
     explicit ReceivingArm() = default;
@@ -39,10 +39,10 @@ class ReceivingArm {
     virtual CampaignSample assemble(std::int64_t instant_ns, std::int64_t now_ns) = 0;
 };
 
-/// Bits of a frame's data that are 1.
+/// Mask of bits in a frame's data.
 using Bits = std::array<std::uint8_t, 64>;
 
-/// Two joints on a bus, and their efforts or a wrench.
+/// Two joints on a bus, with efforts or a wrench.
 struct CampaignArm {
     std::string name;
     bool synchronous = false; ///< the joints measure at a SYNC
@@ -50,15 +50,15 @@ struct CampaignArm {
     std::array<double, 2> step_rad{}; ///< one count of a joint's position
     std::array<double, 2> zero_rad{}; ///< position of a joint where its device's number is 0
     double output_step = 0;           ///< one count of an effort or of a wrench
-    double output_range = 0;          ///< of a wrench; 0: efforts
+    double output_range = 0;          ///< largest value of a wrench; 0: efforts
     std::function<wire::Frames(std::size_t board, const wire::Joints&)> frames;
     std::function<wire::Frames(const wire::SixWords&)> wrench;
     std::function<void(hal::Frame&, std::size_t half)> saturate_wrench;
-    std::function<bool(const hal::Frame&)> has_values; ///< whether the product takes values from it
+    std::function<bool(const hal::Frame&)> has_values; ///< true if the receiver takes values from the frame
     std::vector<hal::Frame> status;                    ///< sent at the start and every 100 ms
     std::function<std::unique_ptr<ReceivingArm>(Trigger, const hal::MotionLimits&)> receive;
 
-    /// Where a frame of a board has the position and the effort of each joint; none: it has not.
+    /// Masks of the position and the effort of each joint in a board's frame; empty if the frame has none.
     struct Fields {
         std::array<Bits, 2> position{}, effort{};
     };
@@ -66,13 +66,13 @@ struct CampaignArm {
 
     [[nodiscard]] bool efforts() const { return output_range == 0; }
 
-    /// Whether a device of the arm sends frames with this identifier, length and flags.
+    /// Returns true if a device of the arm sends frames with this identifier, length and flags.
     [[nodiscard]] bool has_form(const hal::Frame& frame) const;
 
-    /// Finds the fields by what changes in the frames.
+    /// Finds the fields by the bits that change between frames.
     void find_fields();
 
-    /// What the devices send for this many periods, by true time.
+    /// Returns the frames that the devices send in this many periods, in order of true time.
     [[nodiscard]] Traffic run(const Scene& scene, int cycles) const;
 
   private:
@@ -83,11 +83,11 @@ struct CampaignArm {
 [[nodiscard]] bool any(const Bits& bits);
 [[nodiscard]] int count(const Bits& bits);
 
-/// Copies the bits that are 1 in `bits`.
+/// Copies the masked bits.
 void copy_bits(const hal::Frame& from, const Bits& bits, hal::Frame& to);
 
-/// Every family of tests/hal/families, with SYNC, wrapping integers and separate efforts where they have
-/// them.
+/// Returns the families of tests/hal/families, also with SYNC, wrapping integers and separate efforts if they
+/// have them.
 [[nodiscard]] std::vector<CampaignArm> campaign_arms();
 
 } // namespace dfdyn::tests

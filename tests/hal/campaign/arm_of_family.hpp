@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Configures the product for a family of tests/hal/families.
+// Configures the receiver for a family of tests/hal/families.
 #pragma once
 
 #include "dfdyn/hal/sample_assembly.hpp"
@@ -9,7 +9,7 @@
 
 namespace dfdyn::tests {
 
-/// What a family's devices send: its own encoder (`on_wire`), or else the product's.
+/// Returns the frames of a family's devices: from its own encoder (`on_wire`), or else from the product's.
 template <class Family>
 struct OnWire {
     static auto boards() {
@@ -113,7 +113,7 @@ class ReceivingAssembly : public ReceivingArm {
     Assembly assembly_;
 };
 
-/// Takes each joint's step and the position of its encoder's zero from what the boards decode.
+/// Takes each joint's count and the position of its encoder's zero from the decoded frames of the boards.
 template <class Boards>
 void find_scales(Boards boards, CampaignArm& arm) {
     for (std::size_t board = 0; board < boards.size(); ++board) {
@@ -132,7 +132,7 @@ void find_scales(Boards boards, CampaignArm& arm) {
     }
 }
 
-/// An arm with these boards, which receives an output.
+/// An arm with these boards and an output.
 template <class Family, class Output>
 CampaignArm arm_with_output(const std::string& name, const Output& output) {
     const auto boards = OnWire<Family>::boards();
@@ -172,7 +172,7 @@ CampaignArm arm_with_output(const std::string& name, const Output& output) {
     return arm;
 }
 
-/// An arm of joints and a sensor.
+/// An arm with joints and a sensor.
 template <class Joints, class Sensor>
 CampaignArm arm_with_sensor(const std::string& name) {
     const auto sensor = OnWire<Sensor>::sensor();
@@ -194,7 +194,7 @@ CampaignArm arm_with_sensor(const std::string& name) {
     return arm;
 }
 
-/// One count of a board's effort; 0: it has none.
+/// Returns one count of a board's effort; 0: it has none.
 template <class Family>
 double effort_step() {
     double least = 0;
@@ -220,7 +220,7 @@ double effort_step() {
     return least;
 }
 
-/// An arm of joints that measure their own efforts.
+/// An arm whose joints measure their own efforts.
 template <class Family>
 CampaignArm arm_with_efforts(const std::string& name) {
     const hal::Range range{-40, 40};

@@ -12,8 +12,7 @@ struct FreeDrives {
     };
 };
 
-/// Drives with 16 bits of position. Their encoders are mounted so that they go round in the middle of the
-/// motion.
+/// Drives with 16 bits of position, whose encoders wrap in the middle of the motion.
 struct WrappingDrives {
     struct on_wire : families::cia402::on_wire {
         static constexpr double step_rad = wire::turn / 65536;
@@ -24,7 +23,7 @@ struct WrappingDrives {
         }
         static wire::Frames frames(std::size_t board, const wire::Joints& joints) {
             const double position_rad = joints[board].position_rad + mounting_rad;
-            const long long q = std::llround(position_rad / step_rad); // goes round
+            const long long q = std::llround(position_rad / step_rad); // wraps
             const long long t = wire::int16(1000 * joints[board].effort);
             using wire::byte_of;
             return wire::one(wire::frame(board == 0 ? 0x281 : 0x282,

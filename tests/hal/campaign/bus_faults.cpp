@@ -35,7 +35,7 @@ void duplicate_frames(FaultSite& site) {
         }
     });
 }
-/// They are read in another order than they were stamped in.
+/// Delivers frames in a different order than that of their stamps.
 void swap_frames(FaultSite& site) {
     for (std::size_t i = 1; i < site.traffic.size(); ++i) {
         if (site.covers(site.traffic[i]) && FaultSite::is_device(site.traffic[i]) && site.chance(0.2)) {
@@ -44,7 +44,7 @@ void swap_frames(FaultSite& site) {
     }
     site.sort();
 }
-/// Not those of efforts, which may step.
+/// Flips bits of positions and wrenches; efforts may step.
 void corrupt_bits(FaultSite& site) {
     site.change([&](Sent& sent) {
         if (FaultSite::is_device(sent) && sent.frame.length > 0 && site.chance(0.1)) {
@@ -62,7 +62,7 @@ void corrupt_bits(FaultSite& site) {
 
 static void stray_stamp(FaultSite& site, std::int64_t sign) {
     constexpr std::array<std::int64_t, 4> sizes{3'000'000, 40'000'000, 700'000'000, 3'600'000'000'000};
-    auto left = 1 + site.pick(8); // more and fewer than a sampler leaves out in a row
+    auto left = 1 + site.pick(8); // more and fewer than a sampler drops in a row
     site.change([&](Sent& sent) {
         if (left > 0 && site.chance(0.05)) {
             sent.frame.stamp_ns += sign * sizes[static_cast<std::size_t>(site.pick(4))];
@@ -92,7 +92,7 @@ static hal::Frame error_frame(std::uint32_t classes, std::int64_t stamp_ns) {
     return frame;
 }
 void bus_off(FaultSite& site) {
-    std::int64_t clock_ns = 0; // of the stamps, against true time
+    std::int64_t clock_ns = 0; // error of the stamps' clock
     site.change([&](const Sent& sent) { clock_ns = sent.clock_ns; });
     site.remove([](const Sent&) { return true; });
     for (const auto& [classes, time_ns] : {std::pair{0x040U, site.begin_ns}, {0x100U, site.end_ns}}) {
@@ -105,7 +105,7 @@ void bus_off(FaultSite& site) {
 void lose_syncs(FaultSite& site) {
     site.remove([&](const Sent& sent) { return sent.role == Role::sync && site.chance(0.3); });
 }
-/// Answers come later and later, until after the next SYNC.
+/// Delays the answers more and more, until they come after the next SYNC.
 void late_answers(FaultSite& site) {
     const bool synchronous =
         std::ranges::any_of(site.traffic, [](const Sent& sent) { return sent.role == Role::sync; });
@@ -120,12 +120,12 @@ void late_answers(FaultSite& site) {
     });
     site.sort();
 }
-/// Puts frames of other devices onto the bus.
+/// Adds frames of other devices to the bus.
 void add_other_traffic(FaultSite& site) {
     std::uniform_real_distribution<double> load(0.7, 1.15);
     const double others = load(site.engine);
     Traffic dummy;
-    std::int64_t clock_ns = 0; // of the stamps, against true time
+    std::int64_t clock_ns = 0; // error of the stamps' clock
     site.change([&](const Sent& sent) { clock_ns = sent.clock_ns; });
     for (std::int64_t t = site.begin_ns; t < site.end_ns; t += 130 * bus_us) {
         if (site.chance(others * 0.8)) {
@@ -139,7 +139,7 @@ void add_other_traffic(FaultSite& site) {
     site.sort();
 }
 
-/// A bus that sends one frame at a time, the lowest identifier first.
+/// Simulates arbitration: one frame at a time, the lowest identifier first.
 class Arbitration {
   public:
     explicit Arbitration(std::int64_t free_ns) : free_ns_(free_ns) {}
@@ -166,7 +166,7 @@ class Arbitration {
 void overload(FaultSite& site) {
     add_other_traffic(site);
     Arbitration bus(site.begin_ns);
-    // Not the SYNCs: a drive measures when it receives one.
+    // SYNCs are not delayed, because a drive measures when it receives one.
     const auto waits = [](const Sent& sent) { return sent.role != Role::sync; };
     for (const Sent& sent : site.traffic) {
         if (site.covers(sent) && waits(sent)) {
@@ -192,7 +192,7 @@ void malform(FaultSite& site) {
         if (!FaultSite::is_device(sent) || !site.chance(0.1)) {
             return;
         }
-        sent.role = Role::noise; // for faults that are put on top
+        sent.role = Role::noise; // for faults that are applied afterwards
         const hal::Frame sound = sent.frame;
         switch (site.pick(4)) {
         case 0:
@@ -211,7 +211,7 @@ void malform(FaultSite& site) {
             sent.frame.id &= 0x7FFU;
             break;
         }
-        if (site.arm.has_form(sent.frame)) { // some devices have frames of several forms
+        if (site.arm.has_form(sent.frame)) { // some devices have several frame formats
             sent.frame = sound;
             sent.frame.remote = true;
         }

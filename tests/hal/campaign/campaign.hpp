@@ -13,23 +13,22 @@
 
 namespace dfdyn::tests {
 
-/// What came of one family and trigger.
+/// Result for one family and trigger.
 struct CampaignRow {
     std::string family;
     Trigger trigger = Trigger::timer;
     std::uint64_t frames = 0, faults = 0, samples = 0, accepted = 0, outputs = 0;
     std::uint64_t wrong_positions = 0, wrong_outputs = 0;
-    std::uint64_t undecidable_positions = 0, undecidable_outputs = 0; ///< see Match; samples
-    std::uint64_t good = 0;           ///< samples outside of every fault's own time
-    std::uint64_t refused_good = 0;   ///< of them: without positions
-    std::uint64_t unlearned_good = 0; ///< of them: with positions and without an output, where it is due
-    std::vector<std::uint64_t> wrong_by_fault;   ///< of the last fault that began before
-    std::vector<std::uint64_t> refused_by_fault; ///< likewise, of good samples
-    std::vector<std::string> wrong, refused;     ///< the first ones, in words
+    std::uint64_t undecidable_positions = 0, undecidable_outputs = 0; ///< samples; see Match
+    std::uint64_t good = 0;           ///< samples outside of every fault and its recovery
+    std::uint64_t refused_good = 0;   ///< good samples without positions
+    std::uint64_t unlearned_good = 0; ///< good samples with positions and without an output that was due
+    std::vector<std::uint64_t> wrong_by_fault;   ///< by the last fault that began before
+    std::vector<std::uint64_t> refused_by_fault; ///< good samples, by the same fault
+    std::vector<std::string> wrong, refused;     ///< descriptions of the first ones
 };
 
-/// Puts random mixtures of faults on the bus of one kind of arm, and compares every accepted value with the
-/// truth.
+/// Applies random mixtures of faults to the bus of one arm, and compares every accepted value with the truth.
 class Campaign {
   public:
     Campaign(const CampaignArm& arm, Trigger trigger, std::mt19937_64& engine) : arm_(arm), engine_(engine) {
@@ -50,7 +49,7 @@ class Campaign {
     struct ErrorRange {
         std::int64_t least_ns, range_ns;
     };
-    /// A sample with the sampler's time and the true one.
+    /// A sample with the sampler's time and the true time.
     struct Unjudged {
         CampaignSample sample;
         std::int64_t now_ns, true_ns;
@@ -60,12 +59,12 @@ class Campaign {
     static constexpr std::int64_t second = 1'000'000'000;
     static constexpr std::int64_t forever_ns = std::numeric_limits<std::int64_t>::max();
     static constexpr int cycles = 1500;
-    static constexpr std::int64_t clock_shows_ns = 60 * bus_period; ///< after it was set
+    static constexpr std::int64_t clock_shows_ns = 60 * bus_period; ///< duration of a step's effect
     static constexpr std::int64_t start_up_ns = 60 * bus_period;
 
     static std::int64_t nanoseconds(double time_s) { return static_cast<std::int64_t>(1e9 * time_s); }
 
-    /// The longest of the recoveries that are still to come when a fault begins, and its own.
+    /// Returns the longest pending recovery when a fault begins, including its own.
     static std::int64_t recovery_ns(std::span<const PlacedFault> before, const Fault& fault,
                                     std::int64_t begin_ns) {
         std::int64_t longest_ns = nanoseconds(fault.recovery_s);
@@ -76,12 +75,12 @@ class Campaign {
         return longest_ns;
     }
 
-    /// One fault after the other, half of them while the one before is there.
+    /// Places faults one after another; half of them begin during the one before.
     std::vector<PlacedFault> place(const Scene& scene, std::span<const Fault> faults) {
         std::vector<PlacedFault> placed;
         std::uniform_real_distribution<double> unit(0, 1);
         std::int64_t at_ns = scene.cycle_ns(0) + start_up_ns + nanoseconds(0.3 * unit(engine_));
-        std::int64_t free_ns = 0; // of all faults before, recovered
+        std::int64_t free_ns = 0; // end of all earlier faults and their recoveries
         while (std::max(at_ns, free_ns) < scene.cycle_ns(cycles) - second / 2) {
             const Fault& fault =
                 faults[std::uniform_int_distribution<std::size_t>(0, faults.size() - 1)(engine_)];
@@ -105,7 +104,7 @@ class Campaign {
         for (PlacedFault& placed : placed_) {
             FaultSite site{arm_, traffic, placed.begin_ns, placed.end_ns, engine_, scene.truth};
             placed.fault->apply(site);
-            placed.begin_ns = site.begin_ns; // some wait for motion
+            placed.begin_ns = site.begin_ns; // some faults wait for motion
         }
         row_.faults += placed_.size();
         const FaultSite all{arm_, traffic, 0, 0, engine_, scene.truth};
@@ -163,7 +162,7 @@ class Campaign {
         return std::ranges::any_of(placed_,
                                    [&](const PlacedFault& placed) { return placed.covers(time_ns); });
     }
-    /// Whether an output has just frozen, or is frozen and has just come back from another fault.
+    /// Returns true if an output has just frozen, or is frozen and has just returned from another fault.
     bool undetectable_at(std::int64_t time_ns) const {
         const auto begins = [&](std::int64_t begin_ns, double undetectable_s) {
             return time_ns >= begin_ns - bus_period &&
@@ -217,7 +216,7 @@ class Campaign {
         row_.unlearned_good += good && due && !sample.output_valid ? 1 : 0;
     }
 
-    /// What was accepted, what is true, and the faults so far.
+    /// Describes the accepted values, the true ones and the faults so far.
     void describe(const Scene& scene, const Unjudged& unjudged, std::vector<std::string>& list) {
         constexpr std::size_t most = 20;
         if (list.size() == most || described_ == &list) {
@@ -252,8 +251,8 @@ class Campaign {
         list.push_back(text.str());
     }
 
-    /// Of the sampler's time at that time without silences. A clock that was set shows for a while after. A
-    /// value between two measurements, one by the old clock and one by the new, is of an instant between.
+    /// Returns the errors of the sampler's time at a time without silences. A clock step affects samples for
+    /// a while. A value between two measurements, before and after the step, has an error between the two.
     std::vector<ErrorRange> errors_at(std::int64_t heard_ns) const {
         std::vector<ErrorRange> errors;
         for (std::size_t i = 0; i < errors_.size(); ++i) {
@@ -274,8 +273,8 @@ class Campaign {
         return errors;
     }
 
-    /// The least good of the joints, of a sample by a clock with that error. A held value is of its reading's
-    /// instant, which the report tells.
+    /// Returns the worst match of the joints, for a clock with this error. A held value belongs to the time
+    /// of its reading, which follows from its age in the report.
     static Match match_positions(const Judge& judge, const Unjudged& unjudged, const ErrorRange& error) {
         const auto& [sample, now_ns, true_ns, heard_ns] = unjudged;
         Match all = Match::right;
@@ -311,7 +310,7 @@ class Campaign {
     std::vector<PlacedFault> placed_;
     std::vector<JointSight> sight_;
     const char* wrong_kind_ = "";
-    const std::vector<std::string>* described_ = nullptr; ///< one sample of each run is enough
+    const std::vector<std::string>* described_ = nullptr; ///< list with a sample of this run
     struct ClockError {
         std::int64_t error_ns;
         std::int64_t since_ns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the campaign prints and checks.
+// Output and checks of the campaign.
 #pragma once
 
 #include "tests/hal/campaign/campaign.hpp"
@@ -53,8 +53,8 @@ inline void fight(const CampaignArm& arm, Trigger trigger, std::uint64_t frames,
     sum.unlearned_good += row.unlearned_good;
 }
 
-/// Prints the sum, and checks what holds over all families. `most_wrong`: share of the accepted samples;
-/// `most_refused`: share of the good ones; `most_undecidable`: of the accepted ones, and of their outputs.
+/// Prints the sum and checks the limits over all families. `most_wrong`: share of the accepted samples;
+/// `most_refused`: of the good ones; `most_undecidable`: of the accepted ones, and of their outputs.
 inline void check_sum(CampaignRow sum, double most_wrong, double most_refused,
                       double most_undecidable = 0.02) {
     sum.family = "all";
@@ -63,7 +63,7 @@ inline void check_sum(CampaignRow sum, double most_wrong, double most_refused,
         std::cout << "wrong " << wrong << '\n';
     }
     CHECK(share(sum.wrong_positions + sum.wrong_outputs, sum.accepted) <= most_wrong);
-    CHECK(sum.accepted > sum.samples / 3); // it is not right by saying nothing
+    CHECK(sum.accepted > sum.samples / 3); // rejecting everything is not enough
     CHECK(share(sum.undecidable_positions, sum.accepted) < most_undecidable);
     CHECK(share(sum.undecidable_outputs, sum.outputs) < most_undecidable);
     CHECK(share(sum.refused_good, sum.good) < most_refused);

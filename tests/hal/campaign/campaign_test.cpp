@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random mixtures of every fault of the legend, for every family and trigger: how many accepted values are
-// wrong.
+// Random mixtures of every fault of the legend, for every family and trigger: number of accepted wrong
+// values.
 #include "tests/hal/campaign/campaign_table.hpp"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ std::vector<Frame> sent_by(const CampaignArm& arm) {
     return sent;
 }
 
-/// A frame with every other length and other flags that a bus can carry.
+/// Returns a frame with every other length and other flags that a bus can carry.
 std::vector<Frame> other_forms(const Frame& sound) {
     std::vector<Frame> others;
     for (unsigned flags = 0; flags < 8; ++flags) {
@@ -62,7 +62,7 @@ std::vector<Frame> other_forms(const Frame& sound) {
     return others;
 }
 
-/// Forms in which devices of a family also send, other than those of the arm.
+/// Returns true for other frame formats that devices of a family also send.
 bool is_documented(const CampaignArm& arm, const Frame& sound, const Frame& frame) {
     const auto begins = [&](const char* family) { return arm.name.starts_with(family); };
     const bool other_length = frame.length != sound.length;
@@ -71,26 +71,26 @@ bool is_documented(const CampaignArm& arm, const Frame& sound, const Frame& fram
         return false;
     }
     if (begins(
-            "moteus")) { // sub-frames that name what they have, with source and target in either identifier
+            "moteus")) { // sub-frames that name their registers, with source and target in either identifier
         return frame.fd && frame.length > sound.length - 4;
     }
     if (begins("cubemars_mit")) { // without temperature and error
         return !other_id && (!other_length || frame.length == 6);
     }
-    if (begins("damiao") || begins("robstride_mit")) { // the codec of the MIT mode takes CAN FD, too
+    if (begins("damiao") || begins("robstride_mit")) { // the codec of MIT mode also takes CAN FD
         return !other_id && !other_length;
     }
     const bool strain = (sound.id & 0x7C0U) == 0x3C0U && arm.name.ends_with("icub_strain");
-    return strain && !frame.fd && !other_id && frame.length == 7; // with what saturates
+    return strain && !frame.fd && !other_id && frame.length == 7; // with the saturation flags
 }
 
 } // namespace
 
-TEST_CASE("all faults mixed at random make no accepted value wrong") {
-    fight_all(200'000, 0, 0.08, 0.02); // one run of a joint that may be elsewhere is a hundredth of all
+TEST_CASE("random mixtures of all faults: no accepted value is wrong") {
+    fight_all(200'000, 0, 0.08, 0.02); // one run of an undecidable position is 1 % of all
 }
 
-TEST_CASE("no frame of another form than the devices have has values") {
+TEST_CASE("no values are taken from frames of another format") {
     for (const CampaignArm& arm : campaign_arms()) {
         for (const Frame& sound : sent_by(arm)) {
             CHECK(arm.has_form(sound));
@@ -103,7 +103,7 @@ TEST_CASE("no frame of another form than the devices have has values") {
     }
 }
 
-TEST_CASE("the legend and the campaign have the same faults") {
+TEST_CASE("docs/reference/faults.md and the campaign list the same faults") {
     std::ifstream legend(DFDYN_TEST_DATA_DIR "/../../docs/reference/faults.md");
     REQUIRE(legend);
     std::size_t found = 0;
@@ -124,9 +124,9 @@ TEST_CASE("the legend and the campaign have the same faults") {
     CHECK(found == campaign_faults().size());
 }
 
-// docs/reference/faults.md has the figures of the seeds.
-TEST_CASE("all faults mixed over five million frames make at most one of a hundred thousand accepted values "
-          "wrong, and refuse at most two of a hundred good ones",
+// The seeds' results are in docs/reference/faults.md.
+TEST_CASE("all faults mixed over five million frames: 1e-5 of the accepted values wrong, 2 % of good ones "
+          "rejected at most",
           "[.long]") {
     fight_all(5'000'000, 1e-5, 0.02, 0.01);
 }

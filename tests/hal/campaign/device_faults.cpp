@@ -26,7 +26,7 @@ void zero_positions(FaultSite& site) {
         }
     });
 }
-/// Silent for a third of the time, zero for another, and then where it is.
+/// Silent for a third of the time, zero for another, then correct.
 void restart_absolute(FaultSite& site) {
     const std::int64_t third_ns = (site.end_ns - site.begin_ns) / 3;
     const std::size_t joint = site.pick_joint();
@@ -43,7 +43,7 @@ void restart_absolute(FaultSite& site) {
         }
     });
 }
-/// Silent for a while, or not at all, and then counted from where it was switched on.
+/// Silent for a while, or not at all, then counting from the position at power-on.
 void restart_incremental(FaultSite& site) {
     const std::size_t joint = site.pick_joint();
     const std::int64_t back_ns = site.begin_ns + (site.chance(0.5) ? 0 : bus_period * site.pick(200));
@@ -51,7 +51,7 @@ void restart_incremental(FaultSite& site) {
         return site.is_joint(sent, joint) && sent.true_ns >= site.begin_ns && sent.true_ns < back_ns;
     });
     std::optional<double> begin_rad;
-    for (Sent& sent : site.traffic) { // of a second sender the encoder is another one
+    for (Sent& sent : site.traffic) { // a second sender has its own encoder
         if (site.has_position(sent, joint) && !sent.other_sender && sent.true_ns >= back_ns) {
             const double now_rad = sent.shown[joint].position_rad;
             begin_rad = begin_rad.value_or(now_rad);
@@ -60,8 +60,8 @@ void restart_incremental(FaultSite& site) {
     }
 }
 
-/// The values stay as they were at the begin, where the joint passes five counts within `max_age`. A slower
-/// one may have stopped, for all that its counts show.
+/// Freezes the values at the start, if the joint passes five counts within `max_age`. A slower joint may have
+/// stopped, as far as its counts show.
 void freeze_encoder(FaultSite& site) {
     const std::size_t joint = site.pick_joint();
     std::optional<double> kept_rad;
@@ -113,7 +113,7 @@ void saturate_sensor(FaultSite& site) {
     });
 }
 
-/// Another joint's motion, on the same identifier.
+/// Sends another joint's motion on the same identifier.
 void second_joint(FaultSite& site) {
     const std::size_t joint = site.pick_joint();
     const std::int64_t behind_ns = std::int64_t{bus_us} * (200 + site.pick(1600));
@@ -139,7 +139,7 @@ void second_sensor(FaultSite& site) {
         }
     });
 }
-/// The values of 60 ms ago under fresh stamps.
+/// Sends the values of 60 ms ago with new stamps.
 void replay_old(FaultSite& site) {
     const std::size_t joint = site.pick_joint();
     if (!site.wait_for_motion(joint, 0.8)) {
@@ -160,7 +160,7 @@ void replay_old(FaultSite& site) {
     });
 }
 
-/// One of four bits that are worth about 6 to 100 mrad.
+/// Fixes one of four bits with a weight of about 6 to 100 mrad.
 void stick_bit(FaultSite& site) {
     const std::size_t joint = site.pick_joint();
     const double zero_rad = site.arm.zero_rad[joint];
@@ -178,7 +178,7 @@ void stick_bit(FaultSite& site) {
         }
     });
 }
-/// Two boards with each other's identifiers, where both show that.
+/// Exchanges the identifiers of two boards, if the positions differ enough.
 void swap_nodes(FaultSite& site) {
     std::array<std::optional<double>, 2> last;
     for (const Sent& sent : site.traffic) {

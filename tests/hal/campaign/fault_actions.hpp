@@ -10,7 +10,7 @@ inline void move(Sent& sent, std::int64_t by_ns) {
     sent.frame.stamp_ns += by_ns;
 }
 
-/// What happens to frames on their way: bus_faults.cpp.
+/// Faults of the transmission: bus_faults.cpp.
 void lose_frames(FaultSite& site);
 void lose_cycles(FaultSite& site);
 void silence_board(FaultSite& site);
@@ -31,7 +31,7 @@ void overload(FaultSite& site);
 void malform(FaultSite& site);
 void babble(FaultSite& site);
 
-/// What devices send that is not so: device_faults.cpp.
+/// Faults of devices: device_faults.cpp.
 void zero_positions(FaultSite& site);
 void restart_absolute(FaultSite& site);
 void restart_incremental(FaultSite& site);

@@ -8,10 +8,10 @@
 
 namespace dfdyn::tests {
 
-/// What a fault is put into.
+/// Traffic into which a fault is injected, and its time.
 struct FaultSite {
     const CampaignArm& arm;
-    Traffic& traffic; ///< in the order of true time
+    Traffic& traffic; ///< in order of true time
     std::int64_t begin_ns;
     std::int64_t end_ns;
     std::mt19937_64& engine;
@@ -35,27 +35,27 @@ struct FaultSite {
     [[nodiscard]] bool has_position(const Sent& sent, std::size_t joint) const {
         return sent.role == Sent::Role::joints && any(fields(sent).position[joint]);
     }
-    /// Whether a receiver takes the joint's position from it. Other frames may have it, too, in fewer bits.
+    /// Returns true if a receiver uses this frame's position. Others may contain it in fewer bits.
     [[nodiscard]] bool is_reading(const Sent& sent, std::size_t joint) const {
         return has_position(sent, joint) &&
                std::ranges::none_of(arm.fields[sent.unit], [&](const CampaignArm::Fields& part) {
                    return count(part.position[joint]) > count(fields(sent).position[joint]);
                });
     }
-    /// Also in frames of another form: a frozen effort is so there, too.
+    /// Includes frames of another form, which a frozen effort affects, too.
     [[nodiscard]] bool has_effort(const Sent& sent, std::size_t joint) const {
         return (sent.role == Sent::Role::joints || sent.other_form) && any(fields(sent).effort[joint]);
     }
-    /// Whether it is of the board of this joint.
+    /// Returns true if the frame comes from the board of this joint.
     [[nodiscard]] bool is_joint(const Sent& sent, std::size_t joint) const {
         return has_position(sent, joint) || has_effort(sent, joint);
     }
 
-    /// Puts another position, or effort, of a joint into a frame.
+    /// Replaces the position, or the effort, of a joint in a frame.
     void show_position(Sent& sent, std::size_t joint, double position_rad) const;
     void show_effort(Sent& sent, std::size_t joint, double effort) const;
 
-    /// Removes the frames of the fault's time for which `drop` holds.
+    /// Removes the frames during the fault for which `drop` is true.
     template <class Drop>
     void remove(Drop drop) const {
         std::erase_if(traffic, [&](const Sent& sent) { return covers(sent) && drop(sent); });
@@ -68,7 +68,7 @@ struct FaultSite {
             }
         }
     }
-    /// Adds frames made from those of the fault's time.
+    /// Adds frames made from those during the fault.
     template <class Make>
     void add(Make make) const {
         Traffic more;
@@ -80,7 +80,7 @@ struct FaultSite {
         traffic.insert(traffic.end(), more.begin(), more.end());
         sort();
     }
-    /// Moves the begin to where this joint moves fast; the fault is left out where it does not.
+    /// Delays the start until this joint moves fast. Returns false, without a fault, if it never does.
     [[nodiscard]] bool wait_for_motion(std::size_t joint, double least_rad_s);
     void sort() const { std::ranges::stable_sort(traffic, {}, &Sent::true_ns); }
 };
@@ -91,19 +91,19 @@ struct Fault {
     const char* name;
     double shortest_s, longest_s;
     void (*apply)(FaultSite& site);
-    double recovery_s = 0.5; ///< after its end, until joints are trusted again
-    /// For so long from its begin no receiver can tell what it shows from good outputs.
+    double recovery_s = 0.5; ///< from its end until joints are trusted again
+    /// Time from its start in which outputs cannot be distinguished from good ones.
     double undetectable_s = 0;
-    bool stays = false; ///< what it changed stays so until the end
-    /// It may change outputs by so little that no limit shows it.
+    bool stays = false; ///< its effect lasts until the end of the run
+    /// May change outputs by less than any limit.
     bool alters_outputs = false;
-    /// By how much outputs may be older, or newer, than their stamps without a sign of it.
+    /// Undetectable delay, or advance, of outputs relative to their stamps.
     double late_s = 0, early_s = 0;
-    /// By how much all frames without a stamp of their device come late, one as much as the next.
+    /// Largest common delay of all frames without a stamp of their device.
     double waits_s = 0;
 };
 
-/// The faults of the legend that are on a bus.
+/// Returns the faults of the legend that affect a bus.
 std::span<const Fault> campaign_faults();
 
 } // namespace dfdyn::tests

@@ -8,13 +8,13 @@ namespace dfdyn::tests {
 
 namespace {
 
-constexpr int many = 20; ///< readings
+constexpr int many = 20; ///< readings of a long run
 constexpr std::int64_t set_back_ns = 5'000'000;
-constexpr int frames_until_adopted = 20; ///< of a clock that was set back
+constexpr int frames_until_adopted = 20; ///< by ClockGate, after the clock was set back
 constexpr std::int64_t stray_ns = 5'000'000;
-constexpr std::int64_t left_out_ns = 50'000'000; ///< at most: the time of those frames
+constexpr std::int64_t left_out_ns = 50'000'000; ///< largest time of those frames
 
-/// More than a frame that comes late by as much as a period is off.
+/// Larger than the error of a frame that is one period late.
 double jump_rad(double velocity) { return 1e-3 + 3e-3 * std::abs(velocity); }
 
 bool is_between(double value, double one, double other, double tolerance) {
@@ -31,7 +31,7 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
         set_back_ = set_back_ || set_back;
         left_out = set_back ? frames_until_adopted : std::max(0, left_out - 1);
         if (sent.clock_ns != clock_ns) {
-            known_ns_.clear(); // by the stamps the joint had another velocity
+            known_ns_.clear(); // by the stamps, the joint had a different velocity
         }
         clock_ns = sent.clock_ns;
         const std::int64_t time_ns = sent.frame.stamp_ns - sent.clock_ns;
@@ -45,7 +45,7 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
         }
         if (sent.corrupted) {
             blind_.push_back({time_ns, std::max<std::int64_t>(1, time_ns - last_.time_ns), span_ns()});
-            show(site, joint, sent, time_ns); // the bit may be another one
+            show(site, joint, sent, time_ns); // the flipped bit may be a different one
             continue;
         }
         examine(site, joint, sent, time_ns);
@@ -160,7 +160,7 @@ void JointSight::take(Run seen, const Reading& reading) {
                       reading.right ? 0 : std::max<std::int64_t>(1, reading.time_ns - right_ns), span_ns()});
     if (reading.right) {
         if (!known_ns_.empty() && reading.time_ns - known_ns_.back() > bus_max_age + 2 * bus_track_jitter) {
-            known_ns_.clear(); // it may have another velocity since
+            known_ns_.clear(); // the velocity may have changed
         }
         known_ns_.push_back(reading.time_ns);
     }

@@ -14,34 +14,34 @@ namespace dfdyn::tests {
 /// Times of the campaign's buses.
 constexpr std::int64_t bus_us = 1000;
 constexpr std::int64_t bus_period = 2000 * bus_us;
-constexpr std::int64_t bus_jitter = 200 * bus_us; ///< of a frame behind its device's measurement
-constexpr std::int64_t bus_track_jitter = bus_jitter + 50 * bus_us; ///< as the description has it
+constexpr std::int64_t bus_jitter = 200 * bus_us; ///< from a measurement to its frame, at most
+constexpr std::int64_t bus_track_jitter = bus_jitter + 50 * bus_us; ///< value in the description
 constexpr std::int64_t bus_max_age = 3 * bus_period;
-constexpr std::int64_t answer_ns = 600 * bus_us; ///< from a SYNC to the answers to it, at most
+constexpr std::int64_t answer_ns = 600 * bus_us; ///< largest time from a SYNC to its answers
 constexpr std::int64_t timer_delay = 3 * bus_period / 2;
 
-/// What the robot's file says about the joints: twice what they do.
+/// Joint limits in the robot's file: twice the true ones.
 constexpr hal::MotionLimits own_limits{2 * Truth::most_velocity, 2 * Truth::most_acceleration};
 
-/// A frame, and what it is.
+/// A frame and its origin.
 struct Sent {
     enum class Role { sync, joints, wrench, status, noise };
     hal::Frame frame;
-    std::int64_t true_ns = 0; ///< when it was on the wire
+    std::int64_t true_ns = 0; ///< time of transmission
     Role role = Role::noise;
     std::size_t unit = 0; ///< board, from 0
-    std::size_t part = 0; ///< which frame of the board or of the wrench, from 0
+    std::size_t part = 0; ///< index of the frame of the board or of the wrench, from 0
     int cycle = 0;
-    wire::Joints shown{};       ///< by a frame of joints
-    std::int64_t clock_ns = 0;  ///< by which the clock of the stamps had been set
-    bool corrupted = false;     ///< a bit of its data is flipped
-    bool other_form = false;    ///< a gateway has sent it as another kind of frame
-    bool uninformative = false; ///< its position is an old one, or none yet: it says nothing of the joint
-    bool other_sender = false;  ///< of a second sender: not of the joint's own encoder
+    wire::Joints shown{};       ///< values in a joint's frame
+    std::int64_t clock_ns = 0;  ///< error of the stamps' clock
+    bool corrupted = false;     ///< one bit of its data is flipped
+    bool other_form = false;    ///< a gateway changed its frame type
+    bool uninformative = false; ///< its position is repeated, or not known yet
+    bool other_sender = false;  ///< from a second sender, with a different encoder
 };
 using Traffic = std::vector<Sent>;
 
-/// Numbers that do not change while a bus runs.
+/// Constants of a run.
 struct Scene {
     Truth truth;
     std::int64_t start_ns = 0;

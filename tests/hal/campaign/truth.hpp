@@ -8,8 +8,8 @@
 
 namespace dfdyn::tests {
 
-/// What the arm of the campaign does: two joints in smooth motion, their efforts, and a wrench that changes
-/// so fast that one of another period shows.
+/// Motion of the campaign's arm: two joints in smooth motion, their efforts, and a wrench. The wrench changes
+/// so fast that a value from another period is detectable.
 struct Truth {
     static constexpr int joints = 2;
 
@@ -23,7 +23,7 @@ struct Truth {
         }
     }
 
-    /// Position (rad), velocity and acceleration of a joint.
+    /// Returns position (rad), velocity and acceleration of a joint.
     [[nodiscard]] double position(std::size_t i, double t) const {
         return centre[i] + 1.1 * std::sin(slow[i] * t + phase[i]) + 0.15 * std::sin(fast[i] * t);
     }
@@ -33,13 +33,13 @@ struct Truth {
     static constexpr double most_velocity = 1.1 * 1.6 + 0.15 * 6;            // rad/s
     static constexpr double most_acceleration = 1.1 * 1.6 * 1.6 + 0.15 * 36; // rad/s²
 
-    /// N·m or A, at most 8; changes by at most 120 per second.
+    /// Returns an effort (N·m or A), at most 8; changes by at most 120 per second.
     [[nodiscard]] double effort(std::size_t i, double t) const {
         return 6 * std::sin(20 * t + phase[i]) + 2 * position(i, t) / 2;
     }
     static constexpr double effort_bend = 6 * 20 * 20 + most_acceleration; ///< largest second derivative
 
-    /// Share of the sensor's range, channel by channel; changes by at most 3 per second.
+    /// Returns a fraction of the sensor's range, per channel; changes by at most 3 per second.
     [[nodiscard]] double load(std::size_t channel, double t) const {
         return 0.15 * std::sin(20 * t + static_cast<double>(channel) + phase[0]) + 0.02;
     }
