@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readings that the limits of a joint allow, and that are not to be believed all the same.
+// Readings that the limits of a joint allow, but that must be rejected.
 #include "dfdyn/hal/motion/motion.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
@@ -17,7 +17,7 @@ using dfdyn::hal::Reason;
 constexpr std::int64_t period = 2'000'000;
 constexpr std::int64_t us = 1000;
 
-/// A gate, and a joint whose encoder's zero is 1 rad away from 0.
+/// A gate, and a joint whose encoder has its zero at 1 rad.
 struct Joint {
     double step_rad = 1e-5;
     MotionLimits limits;
@@ -42,28 +42,28 @@ struct Joint {
     void glance(int tick, double position_rad) { gate.glance(reading(tick * period, position_rad)); }
 };
 
-TEST_CASE("a coarse encoder that freezes in motion is not trusted while it is frozen") {
+TEST_CASE("a coarse encoder that freezes in motion is rejected while it is frozen") {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr double step_rad = 1.745e-3;
     std::uniform_real_distribution<double> unit(0, 1);
     for (int run = 0; run < 300; ++run) {
         Joint joint{.step_rad = step_rad, .limits = {5.4, 17}};
         const double phase_rad = step_rad * unit(engine);
-        const double speed = (1.46 + 0.1 * unit(engine)) / 500; // rad a tick: five counts in `max_age`
+        const double speed = (1.46 + 0.1 * unit(engine)) / 500; // rad per tick: five counts in `max_age`
         int trusted = 0;
         for (int tick = 0; tick < 350; ++tick) {
             const auto late_ns = static_cast<std::int64_t>(200'000 * unit(engine));
             const double position_rad = phase_rad + speed * std::min(tick, 200);
             const bool ok =
                 joint.gate.take(joint.reading(tick * period + late_ns, position_rad)).reason == Reason::ok;
-            trusted += ok && tick >= 205 ? 1 : 0; // until then it may have stopped
+            trusted += ok && tick >= 205 ? 1 : 0; // before, the joint may have stopped
         }
         CAPTURE(run);
         CHECK(trusted == 0);
     }
 }
 
-TEST_CASE("an encoder that froze while the times of its readings were unknown is not trusted") {
+TEST_CASE("an encoder that froze during readings of unknown time is rejected") {
     Joint joint;
     for (int tick = 0; tick < 200; ++tick) { // at rest
         joint.take(tick, 0.3);
@@ -77,7 +77,7 @@ TEST_CASE("an encoder that froze while the times of its readings were unknown is
     }
 }
 
-TEST_CASE("a reading that follows a late one is refused where two others speak against it") {
+TEST_CASE("after a late reading, one that contradicts two others is rejected") {
     constexpr double speed = 2; // rad/s
     const auto at = [](std::int64_t stamp_ns) { return 0.3 + speed * 1e-9 * static_cast<double>(stamp_ns); };
     Joint joint;
@@ -94,7 +94,7 @@ TEST_CASE("a reading that follows a late one is refused where two others speak a
     CHECK(take(stamp_ns + 6450 * us, 2400 * us) == Reason::position_jump);
 }
 
-TEST_CASE("an encoder that returns at its zero with readings of unknown time is lost") {
+TEST_CASE("an encoder that returns at its zero is lost, even if the times of its readings are unknown") {
     Joint joint;
     for (int tick = 0; tick < 200; ++tick) {
         joint.take(tick, 1 - 1e-3 * (tick - 175)); // passes the zero shortly before the silence
@@ -107,7 +107,7 @@ TEST_CASE("an encoder that returns at its zero with readings of unknown time is 
     }
 }
 
-TEST_CASE("readings that have jumped far away stay refused until a jump takes that back") {
+TEST_CASE("after a large jump, readings are rejected until the reverse jump") {
     for (const bool back : {false, true}) {
         CAPTURE(back);
         Joint joint;
@@ -116,7 +116,7 @@ TEST_CASE("readings that have jumped far away stay refused until a jump takes th
             joint.take(tick, truth(tick));
         }
         REQUIRE(joint.take(200, truth(200)) == Reason::ok);
-        for (int tick = 201; tick < 320; ++tick) { // the board was switched on, and soon a bit is stuck
+        for (int tick = 201; tick < 320; ++tick) { // a restart, and soon a stuck bit
             CHECK(joint.take(tick, 1 + truth(tick) - truth(201) + (tick > 206 ? 0.0124 : 0)) != Reason::ok);
         }
         int trusted = 0;
@@ -128,7 +128,7 @@ TEST_CASE("readings that have jumped far away stay refused until a jump takes th
     }
 }
 
-TEST_CASE("a reading of unknown time at the zero loses no joint that motion leads there") {
+TEST_CASE("a joint that moves to its zero is not lost by a reading of unknown time there") {
     Joint joint;
     const auto truth = [](int tick) { return 1 + 2e-3 * (tick - 350) + 1e-3; };
     Reason last = Reason::position_lost;
@@ -142,7 +142,7 @@ TEST_CASE("a reading of unknown time at the zero loses no joint that motion lead
     CHECK(last == Reason::ok);
 }
 
-TEST_CASE("a zero of unknown time proves nothing against readings that are trusted after it") {
+TEST_CASE("a zero of unknown time is no evidence against later trusted readings") {
     Joint joint;
     const auto truth = [](int tick) { return 0.6 + 2e-3 * (tick - 100); };
     Reason last = Reason::position_lost;
@@ -156,10 +156,10 @@ TEST_CASE("a zero of unknown time proves nothing against readings that are trust
     CHECK(last == Reason::ok);
 }
 
-TEST_CASE("a joint that comes to its zero while a few readings are missing is not lost") {
+TEST_CASE("a joint that moves to its zero while a few readings are missing is not lost") {
     const auto truth = [](int tick) { return 1 + 2e-3 * (tick - 200) + 1e-3; };
     for (const int lost : {3, 4, 5, 7}) {
-        for (const int silence : {0, 20, 100}) { // readings before the lost ones are of unknown time
+        for (const int silence : {0, 20, 100}) { // readings before the lost ones have an unknown time
             for (const bool interrupted : {false, true}) {
                 CAPTURE(lost, silence, interrupted);
                 Joint joint;
@@ -184,7 +184,7 @@ TEST_CASE("a joint that comes to its zero while a few readings are missing is no
     }
 }
 
-TEST_CASE("motion in readings of unknown time makes no joint suspect that is trusted afterwards") {
+TEST_CASE("motion seen in readings of unknown time does not mark a trusted joint as frozen") {
     Joint joint;
     Reason last = Reason::position_lost;
     for (int tick = 0; tick < 800; ++tick) {
@@ -199,7 +199,7 @@ TEST_CASE("motion in readings of unknown time makes no joint suspect that is tru
     CHECK(last == Reason::ok);
 }
 
-TEST_CASE("a joint whose readings return after a flipped bit and a gap is trusted again") {
+TEST_CASE("a joint is trusted again after a flipped bit and a gap") {
     constexpr std::int64_t ms = 1'000'000;
     for (const double speed : {0.0, 1.0, 3.0, -3.0}) { // rad/s
         for (const int slew : {0, 8, 16}) {            // readings on the way back

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joints that are trusted again after a fault has passed, and those that are not.
+// Joints that are trusted again after a fault, and those that are not.
 #include "tests/hal/motion/watched_joint.hpp"
 #include "tests/support/catch.hpp"
 
@@ -9,15 +9,15 @@ namespace motion_recovery_test {
 
 using namespace watched_joint;
 
-TEST_CASE("readings that were trusted for a short time only do not outweigh those before") {
+TEST_CASE("after a short trial, a jump back to the earlier motion is accepted") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
-    REQUIRE(joint.trusted(400, 440, 0.15) > 0); // after a silence the joint can have gone there
+    REQUIRE(joint.trusted(400, 440, 0.15) > 0); // the joint can have moved there during the silence
     CHECK(joint.trusted(440, 600) == 0);        // a jump back: 200 readings are needed
     CHECK(joint.trusted(600, 700) > 50);
 }
 
-TEST_CASE("a jump soon after a silence is no better for what was trusted before the silence") {
+TEST_CASE("a jump soon after a silence is rejected despite earlier trusted readings") {
     for (const double jump_rad : {0.1, -0.1, 0.3}) {
         CAPTURE(jump_rad);
         Watched joint;
@@ -28,21 +28,21 @@ TEST_CASE("a jump soon after a silence is no better for what was trusted before 
     }
 }
 
-TEST_CASE("readings that were trusted for long outweigh those before") {
+TEST_CASE("after a long trial, a jump back to the earlier motion is rejected") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
     REQUIRE(joint.trusted(400, 800, 0.1) > 300);
     CHECK(joint.trusted(800, 1400) == 0);
 }
 
-TEST_CASE("a joint that jumps back to its encoder's zero has not restarted there") {
+TEST_CASE("the reverse of an earlier jump to the encoder's zero is no restart") {
     int tick = 0;
     Watched joint;
     const auto passing = [](int at) { return zero_rad + 1e-3 * (at - 400); };
     for (; tick < 360; ++tick) {
         joint.take(tick, passing(tick));
     }
-    for (; tick < 400; ++tick) { // a bit is stuck until the number changes its sign
+    for (; tick < 400; ++tick) { // a stuck bit, until the number changes its sign
         CHECK(joint.take(tick, passing(tick) - 0.05) != Reason::ok);
     }
     Reason last = Reason::ok;
@@ -52,7 +52,7 @@ TEST_CASE("a joint that jumps back to its encoder's zero has not restarted there
     CHECK(last == Reason::ok);
 }
 
-TEST_CASE("a joint that goes to its encoder's zero from elsewhere has restarted") {
+TEST_CASE("a jump from another position to the encoder's zero is a restart") {
     int tick = 0;
     Watched joint;
     for (; tick < 360; ++tick) {
@@ -63,7 +63,7 @@ TEST_CASE("a joint that goes to its encoder's zero from elsewhere has restarted"
     }
 }
 
-TEST_CASE("a restart is none that takes back a jump of minutes before") {
+TEST_CASE("a restart that reverses a jump of minutes before is still a restart") {
     const auto truth_rad = [](int tick) { return zero_rad + 0.05 + 0.01 * std::sin(0.02 * tick); };
     constexpr int restart = 62832; // 200 turns of the sine
     Watched joint;
@@ -74,13 +74,13 @@ TEST_CASE("a restart is none that takes back a jump of minutes before") {
     }
     REQUIRE(trusted > restart - 300);
     for (int tick = restart; tick < restart + 600; ++tick) {
-        if (tick < restart + 50 || tick >= restart + 150) { // the silence would let it come back
+        if (tick < restart + 50 || tick >= restart + 150) { // after the silence the joint could be there
             CHECK(joint.take(tick, zero_rad + truth_rad(tick) - truth_rad(restart)) != Reason::ok);
         }
     }
 }
 
-TEST_CASE("at 100 Hz the time from one reading to the next is no restart") {
+TEST_CASE("at 100 Hz, the interval between two readings is too short for a restart") {
     constexpr std::int64_t period_100_hz = 10'000'000;
     MotionGate gate({.limits = {5, 20},
                      .range = {-4, 4},
@@ -89,7 +89,7 @@ TEST_CASE("at 100 Hz the time from one reading to the next is no restart") {
                      .jitter_ns = period_100_hz / 10,
                      .qualification = {.readings = 10, .zero_readings = 1000}});
     Reason last = Reason::qualifying;
-    for (int tick = -100; tick < 300; ++tick) { // hits something at its encoder's zero
+    for (int tick = -100; tick < 300; ++tick) { // impact at the encoder's zero
         const double from_zero_rad = -1e-2 * std::abs(tick);
         last = gate.take({.stamp_ns = (tick + 100) * period_100_hz,
                           .position_rad = zero_rad + from_zero_rad,
@@ -100,14 +100,14 @@ TEST_CASE("at 100 Hz the time from one reading to the next is no restart") {
     CHECK(last == Reason::ok);
 }
 
-TEST_CASE("a small jump is followed after 200 readings, also where a reading is missing") {
+TEST_CASE("a small jump is accepted after 200 readings, also with a missing one") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
     CHECK(joint.trusted(302, 480, 0.009) == 0);
     CHECK(joint.trusted(480, 600, 0.009) > 50);
 }
 
-TEST_CASE("while a joint qualifies, a jump within the velocity limit makes it wait for 200 readings") {
+TEST_CASE("a jump within the velocity limit during qualification requires 200 readings") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
     CHECK(joint.trusted(306, 314) == 0);
@@ -115,7 +115,7 @@ TEST_CASE("while a joint qualifies, a jump within the velocity limit makes it wa
     CHECK(joint.trusted(480, 600, 0.009) > 0);
 }
 
-TEST_CASE("after very many refused readings only a jump to where the joint was brings the position back") {
+TEST_CASE("after 500 rejected readings, a loss by a jump ends only with the reverse jump") {
     for (const int refused : {300, 320, 450, 490, 510, 1000}) {
         for (const double left_rad : {0.0, 0.1}) {
             CAPTURE(refused, left_rad);
@@ -129,15 +129,14 @@ TEST_CASE("after very many refused readings only a jump to where the joint was b
     }
 }
 
-TEST_CASE(
-    "after very many refused readings that began with a silence a jump to where the joint can be counts") {
+TEST_CASE("after 500 rejected readings, a loss by a silence ends with a jump to a possible position") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
     CHECK(joint.trusted(310, 1000, 1) == 0);
     CHECK(joint.trusted(1000, 1400) > 100);
 }
 
-TEST_CASE("the jump that is to be taken back is that of this loss, also where it led beyond the range") {
+TEST_CASE("a loss ends with the reverse of its own first jump, also if that led beyond the range") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
     CHECK(joint.trusted(300, 340, 0.3) == 0);
@@ -146,8 +145,7 @@ TEST_CASE("the jump that is to be taken back is that of this loss, also where it
     CHECK(joint.trusted(2180, 2600) > 100);
 }
 
-TEST_CASE(
-    "a jump soon after a silence contradicts what came before it also where a reading is lost with it") {
+TEST_CASE("a jump soon after a silence is a contradiction, also with a lost reading") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
     CHECK(joint.trusted(400, 403) == 0);
@@ -155,13 +153,13 @@ TEST_CASE(
     CHECK(joint.trusted(405, 590, 0.14) == 0);
 }
 
-TEST_CASE("no joint comes to the other side of its way and moves as slowly as before in so short a silence") {
+TEST_CASE("a displacement is rejected if the limits and both velocities exclude it") {
     Watched joint;
     const auto slow = [](int tick) { return 0.1 + 2e-5 * tick; };
     for (int tick = 0; tick < 300; ++tick) {
         joint.take(tick, slow(tick));
     }
-    // 0.2 s: 20 rad/s2 lead 0.4 rad away, but only 0.2 rad if the joint is slow again
+    // 20 rad/s² allow 0.4 rad in 0.2 s, but only 0.2 rad if the joint ends as slowly as it began
     int trusted = 0;
     for (int tick = 400; tick < 900; ++tick) {
         trusted += joint.take(tick, slow(tick) + 0.25) == Reason::ok ? 1 : 0;
@@ -169,7 +167,7 @@ TEST_CASE("no joint comes to the other side of its way and moves as slowly as be
     CHECK(trusted == 0);
 }
 
-TEST_CASE("a slow joint that can be there after a silence is trusted") {
+TEST_CASE("after a silence, a slow joint is trusted at a position that its limits allow") {
     Watched joint;
     const auto slow = [](int tick) { return 0.1 + 2e-5 * tick; };
     int trusted = 0;
@@ -180,7 +178,7 @@ TEST_CASE("a slow joint that can be there after a silence is trusted") {
     CHECK(trusted > 700);
 }
 
-TEST_CASE("readings of unknown time that began too far away lead to none that is trusted") {
+TEST_CASE("a run that begins too far away with unknown times is rejected") {
     const auto trusted_after = [](double off_rad) {
         Watched joint;
         REQUIRE(joint.trusted(0, 300) == 291);
@@ -193,13 +191,13 @@ TEST_CASE("readings of unknown time that began too far away lead to none that is
     CHECK(trusted_after(-0.05) > 400);
 }
 
-/// How many of the last 1000 of 2000 true readings are trusted.
+/// Returns how many of the last 1000 of 2000 correct readings are trusted.
 int trusted_later(Watched& joint, int from) {
     joint.trusted(from, from + 1000);
     return joint.trusted(from + 1000, from + 2000);
 }
 
-TEST_CASE("zeros of a device that is not ready, and then its readings, do not lose the joint") {
+TEST_CASE("zeros of a device that is not ready do not lose the joint") {
     for (const bool untimed : {false, true}) {
         CAPTURE(untimed);
         Watched joint;
@@ -215,8 +213,7 @@ TEST_CASE("zeros of a device that is not ready, and then its readings, do not lo
     }
 }
 
-TEST_CASE("one reading that is off among those of unknown time, or of a device that is not ready, loses no "
-          "joint") {
+TEST_CASE("one wrong reading of unknown time, or of a device that is not ready, does not lose the joint") {
     for (const bool untimed : {false, true}) {
         for (const int off : {300, 301, 302, 340, 374}) {
             for (const double off_rad : {0.026, -0.026, 0.3, 1.0}) {
@@ -234,7 +231,7 @@ TEST_CASE("one reading that is off among those of unknown time, or of a device t
     }
 }
 
-TEST_CASE("readings of unknown time that go on from the encoder's zero show that it has restarted") {
+TEST_CASE("readings of unknown time that continue from the encoder's zero show a restart") {
     Watched joint;
     for (int tick = 0; tick < 200; ++tick) {
         joint.take(tick, 0.3 + 1e-4 * tick);

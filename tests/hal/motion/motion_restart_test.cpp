@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encoders that count from where they were switched on, while another fault hides that.
+// Encoders that count from where they were switched on, while another fault hides the restart.
 #include "dfdyn/hal/motion/motion.hpp"
 #include "tests/support/catch.hpp"
 
@@ -33,21 +33,21 @@ MotionGate new_gate() {
                        .qualification = {.readings = 10, .zero_readings = 1000}});
 }
 
-/// An encoder that is switched on anew at a tick, where its own number is 0. Its zero is so close to the
-/// joint's path that after a silence the joint could be where the encoder then shows it.
+/// An encoder that restarts at a tick, with its own number at 0. Its zero is so close to the joint's path
+/// that after a silence the joint could be at the encoder's new reading.
 struct Restart {
     int began = 0;
-    double off_rad = 0.1; ///< from where the joint is when it begins
+    double off_rad = 0.1; ///< distance of the joint from the zero at the restart
     double zero_rad = truth(began) + off_rad;
 
     [[nodiscard]] EncoderReading at(int tick, double position_rad) const {
         return reading_at(tick * period, position_rad, zero_rad);
     }
-    /// What it shows since then.
+    /// Returns its reading after the restart.
     [[nodiscard]] double counted(int tick) const { return zero_rad + truth(tick) - truth(began); }
     [[nodiscard]] EncoderReading reading(int tick) const { return at(tick, counted(tick)); }
 
-    /// A gate that trusts what the encoder showed before.
+    /// Returns a gate that trusts the readings before the restart.
     [[nodiscard]] MotionGate trusting_gate() const {
         MotionGate gate = new_gate();
         for (int tick = 0; tick < 20; ++tick) {
@@ -56,7 +56,7 @@ struct Restart {
         return gate;
     }
 
-    /// Gives the readings of ticks [from, to), none of which may be trusted. Returns the last one's reason.
+    /// Passes the readings of ticks [from, to) and checks that none is trusted. Returns the last reason.
     Reason refused(MotionGate& gate, int from, int to) const {
         Reason last = Reason::ok;
         bool any = false;
@@ -69,7 +69,7 @@ struct Restart {
     }
 };
 
-TEST_CASE("a restart is recognised by its zero although the next reading is off") {
+TEST_CASE("a restart is detected by its zero despite a wrong next reading") {
     const Restart restart{.began = 120};
     MotionGate gate = restart.trusting_gate();
     gate.take(restart.reading(120));
@@ -77,14 +77,14 @@ TEST_CASE("a restart is recognised by its zero although the next reading is off"
     CHECK(restart.refused(gate, 122, 900) == Reason::position_lost);
 }
 
-TEST_CASE("a restart is recognised by its zero although readings are lost soon after") {
+TEST_CASE("a restart is detected by its zero despite lost readings") {
     const Restart restart{.began = 120};
     MotionGate gate = restart.trusting_gate();
     CHECK(restart.refused(gate, 120, 122) == Reason::qualifying);
     CHECK(restart.refused(gate, 128, 900) == Reason::position_lost); // six were lost
 }
 
-TEST_CASE("a restart is recognised by its zero although a fault is reported soon after") {
+TEST_CASE("a restart is detected by its zero despite a reported fault soon after") {
     const Restart restart{.began = 120};
     MotionGate gate = restart.trusting_gate();
     CHECK(restart.refused(gate, 120, 122) == Reason::qualifying);
@@ -92,7 +92,7 @@ TEST_CASE("a restart is recognised by its zero although a fault is reported soon
     CHECK(restart.refused(gate, 128, 900) == Reason::position_lost);
 }
 
-TEST_CASE("a restart is recognised by the zero of a device that reports a fault") {
+TEST_CASE("a restart is detected by the zero of a device that reports a fault") {
     const Restart restart{.began = 120};
     MotionGate gate = restart.trusting_gate();
     gate.interrupt(restart.reading(120));
@@ -124,27 +124,26 @@ TEST_CASE("readings of unknown time that pass the zero with the joint show no re
     CHECK(last == Reason::ok);
 }
 
-TEST_CASE("readings that change to another run while they qualify are not believed before twenty times as "
-          "many") {
+TEST_CASE("a change to another run during qualification requires twenty times as many readings") {
     const Restart far{.off_rad = -2}; // no reading is near the zero
     MotionGate gate = far.trusting_gate();
     for (int tick = 60; tick < 65; ++tick) {
         gate.take(far.at(tick, truth(tick)));
     }
-    for (int tick = 65; tick < 264; ++tick) { // a bit that is stuck from here on
+    for (int tick = 65; tick < 264; ++tick) { // a bit is stuck from here on
         CAPTURE(tick);
         CHECK(gate.take(far.at(tick, truth(tick) + 0.04)).reason != Reason::ok);
     }
 }
 
-TEST_CASE("a run from the zero that a silence ends before it is judged shows a restart") {
+TEST_CASE("a run from the zero shows a restart, even if a silence ends it early") {
     const Restart restart{.began = 24};
     MotionGate gate = restart.trusting_gate();
     restart.refused(gate, 24, 30); // four readings were lost
     CHECK(restart.refused(gate, 80, 900) == Reason::position_lost);
 }
 
-TEST_CASE("a clock that is set forward does not connect readings that were just refused") {
+TEST_CASE("a clock step forward does not connect rejected readings") {
     const Restart far{.off_rad = -2};           // no reading is near the zero
     const bool noticed = GENERATE(false, true); // a step forward may be taken for a silence
     MotionGate gate = far.trusting_gate();
@@ -165,7 +164,7 @@ TEST_CASE("a clock that is set forward does not connect readings that were just 
     }
 }
 
-TEST_CASE("an encoder that has lost its zero stays so while the clock is set back") {
+TEST_CASE("an encoder that has lost its zero remains lost while the clock is set back") {
     const Restart far{.off_rad = -2}; // no reading is near the zero
     MotionGate gate = far.trusting_gate();
     for (int tick = 20; tick < 600; ++tick) {
@@ -179,7 +178,7 @@ TEST_CASE("an encoder that has lost its zero stays so while the clock is set bac
     }
 }
 
-TEST_CASE("a restart is recognised between the readings of a second sender") {
+TEST_CASE("a restart is detected despite a second sender") {
     const Restart restart{.began = 136};
     MotionGate gate = restart.trusting_gate();
     for (int tick = 136; tick < 225; ++tick) {
@@ -192,7 +191,7 @@ TEST_CASE("a restart is recognised between the readings of a second sender") {
     CHECK(restart.refused(gate, 225, 900) == Reason::position_lost);
 }
 
-TEST_CASE("a device that was not itself for a reading goes on where its joint passes the zero") {
+TEST_CASE("a joint that passes its zero is trusted after one reading of a device that is not ready") {
     const auto passing = [](int tick) { return reading_at(tick * period, 2e-3 * (tick - 230) + 1e-5, 0); };
     MotionGate gate = new_gate();
     Reason last = Reason::position_lost;

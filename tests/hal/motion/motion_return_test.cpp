@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Good joints that must not stay refused, and the encoders beside them that must.
+// Good joints that must be trusted again, and similar faulty encoders that must not.
 #include "tests/hal/motion/watched_joint.hpp"
 #include "tests/support/catch.hpp"
 
@@ -9,7 +9,7 @@ namespace motion_return_test {
 
 using namespace watched_joint;
 
-TEST_CASE("zeros of unknown time do not lose a joint whose motion goes on") {
+TEST_CASE("zeros of unknown time do not lose a joint that continues its motion") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
     joint.gate.glance(Watched::reading(300, zero_rad, true));
@@ -18,7 +18,7 @@ TEST_CASE("zeros of unknown time do not lose a joint whose motion goes on") {
     CHECK(joint.trusted(303, 700) > 150);
 }
 
-TEST_CASE("a joint that comes to its encoder's zero in a silence has not restarted, one that leaves it has") {
+TEST_CASE("after a silence, readings towards the encoder's zero are no restart, readings away from it are") {
     for (const double velocity : {0.5, -0.5}) { // rad/s
         for (const bool restarts : {false, true}) {
             CAPTURE(velocity, restarts);
@@ -37,14 +37,14 @@ TEST_CASE("a joint that comes to its encoder's zero in a silence has not restart
     }
 }
 
-TEST_CASE("a joint that was trusted elsewhere after a long silence comes back to where it was") {
+TEST_CASE("a joint trusted at a wrong position after a long silence is trusted again at the earlier one") {
     Watched joint;
     const auto held_rad = [](int tick) { return 0.2 + 0.01 * std::sin(0.02 * tick); };
     for (int tick = 0; tick < 300; ++tick) {
-        joint.take(tick, held_rad(300) - 6e-4 * (300 - tick)); // it stops soon after
+        joint.take(tick, held_rad(300) - 6e-4 * (300 - tick)); // stops soon afterwards
     }
     int elsewhere = 0;
-    for (int tick = 1800; tick < 1880; ++tick) { // of the joint beside it
+    for (int tick = 1800; tick < 1880; ++tick) { // readings of the neighbouring joint
         elsewhere += joint.take(tick, held_rad(tick) + 0.8) == Reason::ok ? 1 : 0;
     }
     REQUIRE(elsewhere > 50);
@@ -55,8 +55,7 @@ TEST_CASE("a joint that was trusted elsewhere after a long silence comes back to
     CHECK(trusted > 300);
 }
 
-TEST_CASE(
-    "a joint that was not seen while the clock was set is trusted after 200 readings, not at its zero") {
+TEST_CASE("after a clock step, an unexplained position needs 200 readings, and the zero is rejected") {
     for (const double off_rad : {-0.4, 0.2, zero_rad - truth(302)}) {
         CAPTURE(off_rad);
         Watched joint;
@@ -68,16 +67,16 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a joint that is elsewhere for one reading more, with a few lost, is trusted afterwards") {
+TEST_CASE("one more reading of another joint, with a few lost, does not lose the joint") {
     Watched joint;
     REQUIRE(joint.trusted(0, 300) == 291);
-    REQUIRE(joint.trusted(300, 400, 1.2) == 0); // of the joint beside it
+    REQUIRE(joint.trusted(300, 400, 1.2) == 0); // readings of the neighbouring joint
     joint.trusted(400, 428);
     joint.take(428, truth(400) + 1.2);
     CHECK(joint.trusted(432, 1000) > 300);
 }
 
-TEST_CASE("a joint that moves slowly is not taken for the readings that a bit was off a while before") {
+TEST_CASE("a slow joint is not mistaken for earlier readings with a wrong bit") {
     Watched joint;
     const auto slow_rad = [](int tick) { return 0.2 + 2e-3 * (tick - 300); };
     int trusted = 0;
@@ -89,7 +88,7 @@ TEST_CASE("a joint that moves slowly is not taken for the readings that a bit wa
     CHECK(trusted > 300);
 }
 
-TEST_CASE("an encoder that was elsewhere for very many readings is still so after a few lost ones") {
+TEST_CASE("after very many wrong readings, a few lost ones do not restore the encoder") {
     for (const int refused : {100, 260}) {
         CAPTURE(refused);
         Watched joint;
@@ -100,7 +99,7 @@ TEST_CASE("an encoder that was elsewhere for very many readings is still so afte
     }
 }
 
-TEST_CASE("a joint that moves to its zero while its device shows zeros is not away from there") {
+TEST_CASE("a joint that moves to its zero while its device sends zeros is trusted there") {
     Watched joint;
     const auto way_rad = [](int tick) { return zero_rad - 0.024 + 3e-3 * (tick - 365); };
     int trusted = 0;
@@ -113,8 +112,7 @@ TEST_CASE("a joint that moves to its zero while its device shows zeros is not aw
     CHECK(trusted > 50);
 }
 
-TEST_CASE(
-    "a joint that passes near the zero that its device has just shown is not lost for one reading off") {
+TEST_CASE("a joint that passes near a zero just sent by its device is not lost by wrong readings") {
     Watched joint;
     const auto way_rad = [](int tick) { return zero_rad + 0.016 - 1e-3 * (tick - 364); };
     int trusted = 0;

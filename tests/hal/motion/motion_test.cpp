@@ -39,7 +39,7 @@ double truth(int tick) {
     return 0.3 + 0.6 * std::sin(2 * t + 0.5);
 }
 
-/// Takes the true positions of ticks [from, to); the last verdict.
+/// Takes the true positions of ticks [from, to), and returns the last reason.
 Reason follow(MotionGate& gate, int from, int to, double offset_rad = 0) {
     Reason last = Reason::ok;
     for (int tick = from; tick < to; ++tick) {
@@ -54,7 +54,7 @@ MotionGate ready_gate() {
     return gate;
 }
 
-TEST_CASE("a joint is trusted after ten readings that lead from one to the next") {
+TEST_CASE("a joint is trusted after ten consistent readings") {
     MotionGate gate = make_gate();
     CHECK(follow(gate, 0, 9) == Reason::qualifying);
     CHECK(follow(gate, 9, 10) == Reason::ok);
@@ -62,7 +62,7 @@ TEST_CASE("a joint is trusted after ten readings that lead from one to the next"
     CHECK(gate.position_rad() == Approx(truth(2999)));
 }
 
-TEST_CASE("a position that the joint cannot have reached is refused, and the next true one trusted") {
+TEST_CASE("an impossible position is rejected, and the next correct one is trusted") {
     for (const double off_rad : {2e-3, -0.02, 0.5, -2.2}) {
         MotionGate gate = ready_gate();
         CAPTURE(off_rad);
@@ -72,13 +72,13 @@ TEST_CASE("a position that the joint cannot have reached is refused, and the nex
     }
 }
 
-TEST_CASE("the position of the period before is refused where the joint moves") {
+TEST_CASE("a repeated position of a moving joint is rejected") {
     MotionGate gate = ready_gate();
     CHECK(gate.take(reading(20, truth(19))).reason == Reason::position_frozen);
     CHECK(follow(gate, 21, 22) == Reason::ok);
 }
 
-TEST_CASE("an encoder that counts from elsewhere is refused for as long as it goes on so") {
+TEST_CASE("an encoder with a constant offset is rejected until it jumps back") {
     MotionGate gate = ready_gate();
     CHECK(follow(gate, 20, 29, 0.05) == Reason::position_jump);
     CHECK(follow(gate, 29, 5000, 0.05) == Reason::position_lost);
@@ -88,7 +88,7 @@ TEST_CASE("an encoder that counts from elsewhere is refused for as long as it go
     CHECK(follow(gate, 5199, 5200) == Reason::ok);
 }
 
-TEST_CASE("after a silence a joint is trusted where it can have gone, and not at its encoder's own zero") {
+TEST_CASE("after a silence, a joint is trusted at possible positions, but not at its encoder's zero") {
     MotionGate gate = ready_gate();
     CHECK(follow(gate, 40, 49) == Reason::qualifying);
     CHECK(follow(gate, 49, 50) == Reason::ok);
@@ -101,8 +101,8 @@ TEST_CASE("after a silence a joint is trusted where it can have gone, and not at
     }
 }
 
-TEST_CASE("an encoder that has lost its zero is not trusted again, wherever it jumps") {
-    for (const int seen : {0, 1, 3}) { // true readings between the silence and the restart
+TEST_CASE("an encoder that has lost its zero is rejected after any jump") {
+    for (const int seen : {0, 1, 3}) { // correct readings between the silence and the restart
         MotionGate gate = ready_gate();
         follow(gate, 270, 270 + seen);
         const double offset_rad = -1 - truth(270 + seen);
@@ -111,7 +111,7 @@ TEST_CASE("an encoder that has lost its zero is not trusted again, wherever it j
     }
 }
 
-TEST_CASE("a reading of unknown time shows a lost zero, and nothing else") {
+TEST_CASE("readings of unknown time only reveal a lost zero") {
     MotionGate gate = ready_gate();
     gate.glance(reading(20, truth(20) + 1e-3));
     gate.glance(reading(20, -1)); // exactly zero: no position yet
@@ -120,7 +120,7 @@ TEST_CASE("a reading of unknown time shows a lost zero, and nothing else") {
     CHECK(follow(gate, 22, 900) == Reason::position_lost);
 }
 
-TEST_CASE("an impact changes the velocity at once and is followed after ten readings") {
+TEST_CASE("an impact changes the velocity, and is accepted after ten readings") {
     MotionGate gate = make_gate();
     int tick = 0;
     for (; tick < 50; ++tick) {
@@ -133,8 +133,7 @@ TEST_CASE("an impact changes the velocity at once and is followed after ten read
     CHECK(last == Reason::ok);
 }
 
-TEST_CASE(
-    "a jump within the velocity limit is believed in the end only if no more than one reading was lost") {
+TEST_CASE("a jump within the velocity limit is finally accepted if at most one reading was lost") {
     for (const int lost : {0, 1, 2, 5}) {
         CAPTURE(lost);
         MotionGate gate = ready_gate();
@@ -144,7 +143,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a frozen encoder is refused while the joint cannot have stopped; a joint at rest is not") {
+TEST_CASE("a frozen encoder is rejected if the joint cannot have stopped; a joint at rest is accepted") {
     MotionGate gate = ready_gate();
     for (int tick = 20; tick < 500; ++tick) {
         CHECK(gate.take(reading(tick, truth(19))).reason == Reason::position_frozen);
@@ -159,7 +158,7 @@ TEST_CASE("a frozen encoder is refused while the joint cannot have stopped; a jo
     }
 }
 
-TEST_CASE("of one reading after a jump more time does not make it more likely") {
+TEST_CASE("elapsed time after a jump does not make its positions acceptable") {
     MotionGate gate = make_gate();
     for (int tick = 0; tick < 20; ++tick) {
         gate.take(reading(tick, 1e-3 * tick));
@@ -169,7 +168,7 @@ TEST_CASE("of one reading after a jump more time does not make it more likely") 
     }
 }
 
-TEST_CASE("an integer that wraps is unwrapped where one turn alone can be meant") {
+TEST_CASE("a wrapping integer is unwrapped if the turn is unambiguous") {
     const auto wrapped = [](int tick) {
         EncoderReading one = reading(tick, std::remainder(4 * truth(tick), 2.0));
         one.wrap_rad = 2;
@@ -187,10 +186,10 @@ TEST_CASE("an integer that wraps is unwrapped where one turn alone can be meant"
         CHECK((tick < 9 || verdict.reason == Reason::ok));
         CHECK(verdict.position_rad == Approx(4 * truth(tick) - first_turn));
     }
-    CHECK(gate.take(wrapped(3000)).reason == Reason::position_lost); // which turn is not known
+    CHECK(gate.take(wrapped(3000)).reason == Reason::position_lost); // the turn is unknown
 }
 
-TEST_CASE("a clock that was set explains the positions of a lost joint, another step does not") {
+TEST_CASE("only the true clock step explains the positions of a lost joint") {
     for (const auto& [step, believed] : {std::pair{-1.4, true}, std::pair{3.0, false}}) {
         MotionGate gate = ready_gate();
         for (int tick = 20; tick < 40; ++tick) { // stamps are 1.4 ms early
@@ -204,27 +203,27 @@ TEST_CASE("a clock that was set explains the positions of a lost joint, another 
     }
 }
 
-TEST_CASE("a clock that was set does not explain where a joint is after a silence") {
+TEST_CASE("a clock step does not explain a position after a silence") {
     MotionGate gate = ready_gate();
     for (int tick = 400; tick < 420; ++tick) { // counted from where the encoder was switched on
         gate.take(reading(tick, truth(tick) - truth(400) - 1));
     }
     REQUIRE(gate.lost());
-    gate.explain_by_clock(300'000); // what is left of the silence within a period
+    gate.explain_by_clock(300'000); // the rest of the silence within a period
     CHECK(gate.lost());
 }
 
-TEST_CASE("a joint that moved past its encoder's zero before a silence is not one that stood there") {
+TEST_CASE("a joint that moved past its encoder's zero before a silence was not at rest there") {
     MotionGate gate = make_gate();
     for (int tick = 0; tick < 20; ++tick) {
         gate.take(reading(tick, -1 + 6e-4 * (tick - 19) + count_rad));
     }
-    for (int tick = 220; tick < 260; ++tick) { // it restarts at zero, wherever the joint is
+    for (int tick = 220; tick < 260; ++tick) { // restarts at zero, at any position of the joint
         CHECK(gate.take(reading(tick, -1 + 6e-4 * (tick - 220) + count_rad)).reason != Reason::ok);
     }
 }
 
-TEST_CASE("a restart is recognised by a zero that was seen shortly before its readings") {
+TEST_CASE("a restart is detected by a zero shortly before its readings") {
     MotionGate gate = ready_gate();
     gate.take(reading(270, -1));
     for (int tick = 281; tick < 600; ++tick) {
@@ -232,7 +231,7 @@ TEST_CASE("a restart is recognised by a zero that was seen shortly before its re
     }
 }
 
-TEST_CASE("an encoder with coarse counts is refused while it is frozen") {
+TEST_CASE("an encoder with coarse counts is rejected while it is frozen") {
     constexpr double coarse_rad = 1.745e-3;
     MotionGate gate({.limits = {},
                      .range = {-3, 3},
@@ -256,7 +255,7 @@ TEST_CASE("an encoder with coarse counts is refused while it is frozen") {
     }
 }
 
-TEST_CASE("while the clock is set a joint goes on from its motion; another position takes longer") {
+TEST_CASE("after a clock step, a joint continues its motion; another position needs more readings") {
     for (const double offset_rad : {0.0, -0.06}) {
         MotionGate gate = ready_gate();
         gate.forget_time();
@@ -265,7 +264,7 @@ TEST_CASE("while the clock is set a joint goes on from its motion; another posit
     }
 }
 
-TEST_CASE("a small jump does not bring a lost zero back") {
+TEST_CASE("a small jump does not restore a lost zero") {
     MotionGate gate = ready_gate();
     CHECK(follow(gate, 20, 600, 0.5) == Reason::position_lost);
     CHECK(follow(gate, 600, 1200, 0.506) == Reason::position_lost);

@@ -9,12 +9,12 @@ using dfdyn::hal::StartupGate;
 
 constexpr StartupGate::Config quick{.readings = 3, .zero_readings = 20};
 
-TEST_CASE("a source qualifies with a few readings") {
+TEST_CASE("a source qualifies after the required number of readings") {
     StartupGate gate(quick);
     CHECK_FALSE(gate.qualified(false));
     CHECK_FALSE(gate.qualified(false));
     CHECK(gate.qualified(false));
-    CHECK(gate.qualified(true)); // a zero is as good as any from now on
+    CHECK(gate.qualified(true)); // zeros are accepted from now on
 }
 
 TEST_CASE("zeros after power-on do not count") {
@@ -27,7 +27,7 @@ TEST_CASE("zeros after power-on do not count") {
     CHECK(gate.qualified(false));
 }
 
-TEST_CASE("very many zeros in a row are believed") {
+TEST_CASE("very many consecutive zeros are accepted") {
     StartupGate gate(quick);
     for (int i = 1; i < 20; ++i) {
         CHECK_FALSE(gate.qualified(true));
@@ -36,9 +36,9 @@ TEST_CASE("very many zeros in a row are believed") {
     CHECK(gate.qualified(false));
 }
 
-TEST_CASE("a source that was silent qualifies again") {
+TEST_CASE("a source must qualify again after a silence") {
     StartupGate gate(quick);
-    gate.restart(); // nothing to lose
+    gate.restart(); // no effect: nothing is qualified yet
     CHECK(gate.restarts() == 0);
     for (int i = 0; i < 3; ++i) {
         gate.qualified(false);

@@ -12,11 +12,11 @@ using dfdyn::hal::MotionGate;
 using dfdyn::hal::Reason;
 
 constexpr std::int64_t period = 2'000'000;
-constexpr double zero_rad = 1; ///< where the encoder's own number is 0
+constexpr double zero_rad = 1; ///< position where the encoder's own number is 0
 
 inline double truth(int tick) { return 0.3 + 0.6 * std::sin(4e-3 * tick); }
 
-/// A gate and the readings that it is given.
+/// A gate and the readings that it takes.
 struct Watched {
     MotionGate gate{{.limits = {5, 20},
                      .range = {-3, 3},
@@ -35,7 +35,7 @@ struct Watched {
                 .zero = zero};
     }
 
-    /// Gives the readings of ticks [from, to), this far from the truth; returns how many were trusted.
+    /// Passes the readings of ticks [from, to) with this error, and returns how many were trusted.
     int trusted(int from, int to, double off_rad = 0) {
         int count = 0;
         for (int tick = from; tick < to; ++tick) {
