@@ -71,7 +71,7 @@ std::vector<Frame> traffic(std::int64_t end_ns, std::mt19937_64& engine) {
     return frames;
 }
 
-TEST_CASE("a timer's samples are steady and true, whatever the phases, rates and latencies") {
+TEST_CASE("a timer's samples are periodic and correct for any phases, rates and latencies") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm = make_arm();
     const std::vector<Frame> frames = traffic(1000 * ms, engine);
@@ -100,7 +100,7 @@ TEST_CASE("a timer's samples are steady and true, whatever the phases, rates and
     CHECK(outputs < 970); // 990 ms / 1.03 ms
 }
 
-TEST_CASE("nothing was heard yet, and nothing is pretended") {
+TEST_CASE("without frames there are no samples and no valid outputs") {
     Arm arm = make_arm();
     const auto [sample, report] = arm.assemble(0, 0);
     CHECK(report.position == Reason::waiting_for_position);

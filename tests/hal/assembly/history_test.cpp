@@ -14,7 +14,7 @@ bool push(History& history, std::int64_t stamp_ns) {
     return history.push({stamp_ns, dfdyn::hal::Reason::ok, {static_cast<double>(stamp_ns)}});
 }
 
-TEST_CASE("a history has the neighbours of any instant it reaches back to") {
+TEST_CASE("a history returns the neighbours of any time that it covers") {
     History history;
     CHECK(history.around(0).before == nullptr);
     CHECK(history.around(0).after == nullptr);
@@ -36,7 +36,7 @@ TEST_CASE("a history has the neighbours of any instant it reaches back to") {
     }
 }
 
-TEST_CASE("a history ignores entries that are not later than its newest") {
+TEST_CASE("a history ignores entries that are not later than the newest") {
     History history;
     CHECK(push(history, -5));
     CHECK(push(history, 10));
@@ -46,7 +46,7 @@ TEST_CASE("a history ignores entries that are not later than its newest") {
     CHECK(history.around(9).before->stamp_ns == -5);
 }
 
-TEST_CASE("between two measurements values are on the line") {
+TEST_CASE("values between two measurements are interpolated linearly") {
     const Measurement<2> before{100, dfdyn::hal::Reason::ok, {1, -8}};
     const Measurement<2> after{300, dfdyn::hal::Reason::ok, {3, 0}};
     const Measurement<2> between = interpolate(before, after, 150);

@@ -41,7 +41,7 @@ Arm<n> make_arm(dfdyn::Extent<n> joints) {
     return {config, Efforts<n>(efforts)};
 }
 
-TEST_CASE("an arm whose number of joints is known at run time gives the samples of a fixed number") {
+TEST_CASE("a run-time number of joints gives the same samples as a fixed number") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_real_distribution<double> chance(0, 1);
     Arm<3> fixed = make_arm<3>({});

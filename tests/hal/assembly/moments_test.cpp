@@ -30,7 +30,7 @@ Arm make_drives() {
             EffortOutput<2, 8>({.track = track, .range = {Range{-30, 30}, Range{-30, 30}}})};
 }
 
-TEST_CASE("at a SYNC the values measured at the one before are complete, and exact") {
+TEST_CASE("at a SYNC, the values measured at the one before are complete and exact") {
     Arm arm = make_drives();
     const std::array<Cia402Drive, 2> drives = two_drives();
     for (int cycle = 0; cycle < 20; ++cycle) {
@@ -66,7 +66,7 @@ TEST_CASE("at a SYNC the values measured at the one before are complete, and exa
     CHECK_FALSE(arm.colliding_id().has_value());
 }
 
-TEST_CASE("after an incomplete set was dropped the next one begins with the next frame") {
+TEST_CASE("after an incomplete set is dropped, the next one begins with the next frame") {
     SampleTriggerWatch<2> moments{{}};
     CHECK_FALSE(moments.drop_set(0));
     moments.measured(0);
@@ -81,7 +81,7 @@ TEST_CASE("after an incomplete set was dropped the next one begins with the next
     CHECK(moment.instant_ns == 6);
 }
 
-TEST_CASE("an output that is known only after its set was dropped does not complete the next set") {
+TEST_CASE("an output that arrives after its set was dropped does not complete the next one") {
     SampleTriggerWatch<1> moments{{}};
     moments.measured(0);
     CHECK(moments.completed(10).kind == SampleTrigger::Kind::set);
@@ -92,7 +92,7 @@ TEST_CASE("an output that is known only after its set was dropped does not compl
     CHECK(moments.completed(30).instant_ns == 30);
 }
 
-TEST_CASE("a drive that does not answer a SYNC has no new sample") {
+TEST_CASE("a drive that does not answer a SYNC has no new value") {
     Arm arm = make_drives();
     const std::array<Cia402Drive, 2> drives = two_drives();
     std::vector<Reason> positions;
@@ -115,7 +115,7 @@ TEST_CASE("a drive that does not answer a SYNC has no new sample") {
                                            Reason::position_stale, Reason::position_stale});
 }
 
-TEST_CASE("a set is complete when all joints and the wrench are new, at the wrench's own instant") {
+TEST_CASE("a set is complete when all joints and the wrench are new, at the wrench's time") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();

@@ -50,7 +50,7 @@ Joint moving() {
     return joint;
 }
 
-TEST_CASE("a position between two readings is on the line between them, of the time of measurement") {
+TEST_CASE("a position between two readings is interpolated at the time of measurement") {
     Joint joint = moving();
     const Measurement<1> measured = joint.track.at(33 * ms, 41 * ms);
     CHECK(measured.reason == Reason::ok);
@@ -59,7 +59,7 @@ TEST_CASE("a position between two readings is on the line between them, of the t
     CHECK(joint.track.newest_ns() == 40 * ms);
 }
 
-TEST_CASE("a position that is not due yet is held; one that was due is missing, and interpolated later") {
+TEST_CASE("a position that is not due is held; one that was due is missing until it is interpolated") {
     Joint joint = moving();
     CHECK(joint.track.at(41 * ms, 41 * ms).value[0] == at(40 * ms));
     CHECK(joint.track.origin(41 * ms) == ValueOrigin::held);
@@ -71,7 +71,7 @@ TEST_CASE("a position that is not due yet is held; one that was due is missing, 
     CHECK(joint.track.origin(43 * ms) == ValueOrigin::bridged);
 }
 
-TEST_CASE("a position that the motion does not lead to makes a hole, which is not interpolated over") {
+TEST_CASE("there is no interpolation across a position that the motion excludes") {
     Joint joint = moving();
     CHECK(joint.push(42 * ms, 0.2) == Reason::position_jump);
     CHECK(joint.push(44 * ms) == Reason::ok);
@@ -81,7 +81,7 @@ TEST_CASE("a position that the motion does not lead to makes a hole, which is no
     CHECK(joint.reason_at(45 * ms, 47 * ms) == Reason::ok);
 }
 
-TEST_CASE("two positions of one instant make a hole of both") {
+TEST_CASE("two different positions with one stamp are both rejected") {
     Joint joint = moving();
     CHECK(joint.push(40 * ms, 0.2) == Reason::time_not_increasing);
     CHECK(joint.reason_at(40 * ms, 41 * ms) == Reason::time_not_increasing);
@@ -99,7 +99,7 @@ TEST_CASE("a second sender of a joint is detected by its rate, with any values")
     CHECK(joint.track.collisions() >= 7);
 }
 
-TEST_CASE("a device that is not itself makes its joint qualify; a value of an unknown SYNC does not") {
+TEST_CASE("a device fault requires new qualification; an answer to an unknown SYNC does not") {
     Joint unknown = moving();
     CHECK(unknown.push(42 * ms, 0, Reason::sync_unknown) == Reason::sync_unknown);
     CHECK(unknown.push(44 * ms) == Reason::ok);

@@ -8,7 +8,7 @@ namespace sample_assembly_test {
 namespace hal = dfdyn::hal;
 using namespace dfdyn::tests;
 
-TEST_CASE("an arm on a bus is learned from, tick by tick, once it has qualified") {
+TEST_CASE("an estimator learns from an arm on a bus at every tick after qualification") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     CHECK(arm.tick().position() == hal::Reason::history_too_short);

@@ -74,7 +74,7 @@ struct Bench {
 const SamplerConfig timer{.timer = true, .period_ns = 2 * ms, .delay_ns = 3 * ms, .patience_ns = 6 * ms};
 const SamplerConfig moments{.timer = false, .period_ns = 2 * ms, .delay_ns = 0, .patience_ns = 6 * ms};
 
-TEST_CASE("a timer's samples come every period, of an instant that is its delay ago") {
+TEST_CASE("a timer's samples come every period, with a constant delay") {
     Bench bench(timer);
     bench.frames(start, start + 10 * ms, ms);
     CHECK(bench.times == std::vector{start + 2 * ms, start + 4 * ms, start + 6 * ms, start + 8 * ms});
@@ -83,7 +83,7 @@ TEST_CASE("a timer's samples come every period, of an instant that is its delay 
     CHECK(bench.times.back() == start + 10 * ms); // no frame of that time can come any more
 }
 
-TEST_CASE("samples of moments are of their instants, and come at the period where there are none") {
+TEST_CASE("triggered samples have their own times; without triggers, samples are periodic") {
     Bench bench(moments);
     for (int cycle = 0; cycle < 4; ++cycle) {
         bench.frame(start + 2 * cycle * ms, 0x80);
@@ -95,7 +95,7 @@ TEST_CASE("samples of moments are of their instants, and come at the period wher
           std::vector{start + 12 * ms, start + 14 * ms, start + 16 * ms, start + 18 * ms}); // after 6 ms
 }
 
-TEST_CASE("a moment from before a silence makes no sample after those of the silence") {
+TEST_CASE("a trigger from before a silence makes no sample after those of the silence") {
     Bench bench(moments);
     bench.frame(start, 0x80);
     bench.frame(start + 2 * ms, 0x80);
@@ -107,7 +107,7 @@ TEST_CASE("a moment from before a silence makes no sample after those of the sil
     CHECK(bench.instants.back() == start + 403 * ms);
 }
 
-TEST_CASE("moments that are further apart than the patience make their samples, in order of time") {
+TEST_CASE("triggers further apart than the patience make their samples in order of time") {
     for (const std::int64_t apart_ns : {13 * ms / 2, 7 * ms, 8 * ms, 10 * ms, 100 * ms, 700 * ms}) {
         CAPTURE(apart_ns);
         Bench bench(moments);
@@ -131,7 +131,7 @@ TEST_CASE("moments that are further apart than the patience make their samples, 
     }
 }
 
-TEST_CASE("a sample with a missing value waits for it, and those after it wait too, in order") {
+TEST_CASE("a sample waits for a missing value, and later samples wait in order") {
     Bench bench(timer);
     bench.arm.patience_ns = 20 * ms;
     bench.arm.known_ns = start + 2 * ms;
@@ -145,7 +145,7 @@ TEST_CASE("a sample with a missing value waits for it, and those after it wait t
     CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms, start + 5 * ms});
 }
 
-TEST_CASE("a sample waits no longer than its value can still come") {
+TEST_CASE("a sample stops waiting when its value can no longer come") {
     Bench bench(timer);
     bench.arm.known_ns = start + 2 * ms;
     bench.arm.patience_ns = 5 * ms;
@@ -155,7 +155,7 @@ TEST_CASE("a sample waits no longer than its value can still come") {
     CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms}); // 5 ms later it is given up
 }
 
-TEST_CASE("a sample that is complete does not overtake one that waits") {
+TEST_CASE("a complete sample does not overtake a waiting one") {
     Bench bench(timer);
     bench.arm.patience_ns = 20 * ms;
     bench.arm.known_ns = start + 2 * ms;
@@ -167,7 +167,7 @@ TEST_CASE("a sample that is complete does not overtake one that waits") {
     CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms, start + 5 * ms});
 }
 
-TEST_CASE("no more samples wait than there is room for") {
+TEST_CASE("the number of waiting samples is bounded") {
     Bench<2> bench(timer);
     bench.arm.patience_ns = 1000 * ms;
     bench.arm.known_ns = start;
@@ -176,7 +176,7 @@ TEST_CASE("no more samples wait than there is room for") {
     CHECK(bench.times.back() == start + 8 * ms);
 }
 
-TEST_CASE("a frame whose stamp is ahead is left out if the next stamp does not continue from it") {
+TEST_CASE("a frame with a stamp ahead is dropped if the next stamp does not continue from it") {
     Bench bench(timer);
     bench.frames(start, start + 4 * ms, ms);
     bench.frame(start + 700 * ms);
@@ -187,7 +187,7 @@ TEST_CASE("a frame whose stamp is ahead is left out if the next stamp does not c
     CHECK(bench.times == std::vector{start + 2 * ms, start + 4 * ms});
 }
 
-TEST_CASE("up to three frames in a row whose stamps are ahead are left out") {
+TEST_CASE("up to three consecutive frames with stamps ahead are dropped") {
     for (int ahead = 1; ahead <= static_cast<int>(Sampler<ScriptedArm>::most_strays); ++ahead) {
         CAPTURE(ahead);
         Bench bench(timer);
@@ -200,7 +200,7 @@ TEST_CASE("up to three frames in a row whose stamps are ahead are left out") {
     }
 }
 
-TEST_CASE("a frame whose stamp is ahead is taken if the next three stamps go on from it") {
+TEST_CASE("a frame with a stamp ahead is taken if the next three stamps continue from it") {
     Bench bench(timer);
     bench.frames(start, start + 4 * ms, ms);
     bench.frames(start + 700 * ms, start + 702 * ms, ms);
@@ -212,7 +212,7 @@ TEST_CASE("a frame whose stamp is ahead is taken if the next three stamps go on 
     CHECK(bench.arm.updates == 9);
 }
 
-TEST_CASE("frames that come in bursts, or seldom, are all taken, the latter with the next one") {
+TEST_CASE("frames in bursts are taken at once, and rare frames with the next one") {
     for (const std::int64_t apart_ns : {6 * ms, 10 * ms, 90 * ms, 110 * ms, 300 * ms}) {
         for (const int burst : {1, 2, 3, 4}) {
             CAPTURE(apart_ns, burst);
@@ -230,7 +230,7 @@ TEST_CASE("frames that come in bursts, or seldom, are all taken, the latter with
     }
 }
 
-TEST_CASE("where time returns to between frames that are held, only those ahead of it are left out") {
+TEST_CASE("if time returns to between held frames, only those ahead of it are dropped") {
     Bench bench(timer);
     bench.frames(start, start + 4 * ms, ms);
     bench.frame(start + 20 * ms);
@@ -241,7 +241,7 @@ TEST_CASE("where time returns to between frames that are held, only those ahead 
     CHECK(bench.arm.taken_ns.back() == start + 25 * ms); // overtaken by the one of that time
 }
 
-TEST_CASE("a bus that tells the time between frames makes the samples of its recording") {
+TEST_CASE("a bus that reports the time between frames gives the samples of its recording") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto draw = [&](std::int64_t from, std::int64_t to) {
         return std::uniform_int_distribution<std::int64_t>(from, to)(engine);
@@ -277,7 +277,7 @@ TEST_CASE("a bus that tells the time between frames makes the samples of its rec
     CHECK(strays > 100);
 }
 
-TEST_CASE("a long silence makes samples for a second, and none for the rest of it") {
+TEST_CASE("a long silence makes samples for one second only") {
     Bench bench(timer);
     bench.frames(start, start + 4 * ms, ms);
     bench.frame(start + 5000 * ms);
@@ -290,7 +290,7 @@ TEST_CASE("a long silence makes samples for a second, and none for the rest of i
     CHECK(bench.instants.size() - count == 1);
 }
 
-TEST_CASE("stamps from one end of the integers to the other leave the samples at the period") {
+TEST_CASE("stamps at both ends of the integer range keep the samples periodic") {
     constexpr std::int64_t first = std::numeric_limits<std::int64_t>::min() + 1000 * ms;
     constexpr std::int64_t last = std::numeric_limits<std::int64_t>::max() - 10'000 * ms;
     Bench bench(timer);

@@ -21,7 +21,7 @@ Joint ready_joint() {
     return joint;
 }
 
-TEST_CASE("a value belongs to its instant: measured, interpolated, or held") {
+TEST_CASE("a value is measured, interpolated or held at the sample time") {
     Joint joint = ready_joint();
     CHECK(joint.at(30, 30).value[0] == Approx(0.3));
     CHECK(joint.at(30, 30).stamp_ns == 30);
@@ -33,7 +33,7 @@ TEST_CASE("a value belongs to its instant: measured, interpolated, or held") {
     CHECK(joint.newest_ns() == 40);
 }
 
-TEST_CASE("a value that is not there has a reason") {
+TEST_CASE("a missing value has a reason") {
     CHECK(make_joint().at(0, 0).reason == Reason::waiting_for_position);
     Joint joint = ready_joint();
     CHECK(joint.at(9, 9).reason == Reason::history_too_short);
@@ -45,7 +45,7 @@ TEST_CASE("a value that is not there has a reason") {
     CHECK(joint.at(40, 40).reason == Reason::ok);
 }
 
-TEST_CASE("a bad reading spoils the instants next to it and no others") {
+TEST_CASE("a bad reading invalidates only the adjacent sample times") {
     Joint joint = ready_joint();
     joint.push(52, Reason::encoder_fault, {0.5}, false);
     joint.push(62, Reason::ok, {0.6}, false);
@@ -58,14 +58,14 @@ TEST_CASE("a bad reading spoils the instants next to it and no others") {
     CHECK(joint.at(65, 65).reason == Reason::ok);
 }
 
-TEST_CASE("a reading beyond the range is refused") {
+TEST_CASE("a reading beyond the range is rejected") {
     Joint joint = ready_joint();
     joint.push(52, Reason::ok, {1.001}, false);
     CHECK(joint.at(50, 50).reason == Reason::position_out_of_range);
     CHECK(joint.range().count() == 1);
 }
 
-TEST_CASE("a joint qualifies, and again after a silence or a fault") {
+TEST_CASE("a joint must qualify at the start and after a silence or a fault") {
     Joint joint = make_joint();
     joint.push(12, Reason::ok, {0}, false);
     joint.push(22, Reason::ok, {0}, false);
@@ -83,7 +83,7 @@ TEST_CASE("a joint qualifies, and again after a silence or a fault") {
     CHECK(joint.at(80, 80).reason == Reason::qualifying);
 }
 
-TEST_CASE("a reading that is not later than the last is counted and changes nothing") {
+TEST_CASE("a reading that is not later than the last is counted and ignored") {
     Joint joint = ready_joint();
     joint.push(42, Reason::ok, {0.4}, false);
     joint.push(32, Reason::encoder_fault, {0.9}, false);
@@ -91,7 +91,7 @@ TEST_CASE("a reading that is not later than the last is counted and changes noth
     CHECK(joint.at(40, 40).value[0] == Approx(0.4));
 }
 
-TEST_CASE("two different readings of one instant are neither believed") {
+TEST_CASE("two different readings with one stamp are both rejected") {
     Joint joint = ready_joint();
     joint.push(42, Reason::ok, {0.9}, false);
     CHECK(joint.at(40, 40).reason == Reason::time_not_increasing);
@@ -110,7 +110,7 @@ Joint periodic_joint() {
 
 } // namespace
 
-TEST_CASE("a value that was due and has not come is missing, not the one before") {
+TEST_CASE("a value that was due and has not come is missing; the last one is not held") {
     Joint joint = periodic_joint();
     CHECK(joint.at(25, 33).reason == Reason::ok); // it may come until 33
     CHECK(joint.origin(25) == ValueOrigin::held);
@@ -121,7 +121,7 @@ TEST_CASE("a value that was due and has not come is missing, not the one before"
     CHECK_FALSE(joint.pending(25, 56)); // the next would be too far away
 }
 
-TEST_CASE("a missing value is interpolated once the next has come, unless that is too far away") {
+TEST_CASE("a missing value is interpolated when the next one comes, unless the gap is too long") {
     Joint joint = periodic_joint();
     joint.push(40, Reason::ok, {0.4}, false);
     CHECK_FALSE(joint.pending(25, 41));

@@ -180,7 +180,7 @@ TEST_CASE("frames sent to a replay can be read in order and a full queue refuses
     CHECK(bus.counters().sent == 65);
 }
 
-TEST_CASE("a replay returns random recordings completely and without the heap for any steps of its clock") {
+TEST_CASE("a replay returns random recordings completely, without the heap, for any clock steps") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int round = 0; round < 50; ++round) {
         std::vector<ReplayEntry> recording(200);

@@ -81,7 +81,7 @@ TEST_CASE(
     CHECK(worst_ns > 10'000);
 }
 
-TEST_CASE("a controller's clock that restarts is followed") {
+TEST_CASE("a restart of a controller's clock is detected") {
     HardwareClock clock;
     CHECK(clock.to_monotonic(500 * second_ns, 10 * second_ns) == 10 * second_ns);
     CHECK(clock.to_monotonic(0, 11 * second_ns) == 11 * second_ns);

@@ -25,7 +25,7 @@ Watch after_step(std::int64_t set_ns, std::array<bool, 3> set, std::array<int, 3
     return watch;
 }
 
-TEST_CASE("a clock that was set shows in the intervals of all sources") {
+TEST_CASE("a clock step changes the intervals of all sources") {
     for (const std::int64_t by_us : {-3900, -1500, 1500, 3000}) {
         CAPTURE(by_us);
         const Watch watch = after_step(by_us * us, {true, true, true});
@@ -35,13 +35,13 @@ TEST_CASE("a clock that was set shows in the intervals of all sources") {
     }
 }
 
-TEST_CASE("a source that lost frames when the clock was set shows it all the same") {
+TEST_CASE("a source that lost frames during a clock step still shows the step") {
     const Watch watch = after_step(-1500 * us, {true, true, true}, {0, 1, 2});
     REQUIRE(watch.step_ns(20 * period, 200 * us));
     CHECK(*watch.step_ns(20 * period, 200 * us) == -1500 * us);
 }
 
-TEST_CASE("a single source that is late, or early, is not the clock") {
+TEST_CASE("a single late or early source is no clock step") {
     CHECK_FALSE(after_step(1500 * us, {true, false, false}).step_ns(20 * period, 200 * us));
     CHECK_FALSE(after_step(1500 * us, {true, true, false}).step_ns(20 * period, 200 * us));
     CHECK_FALSE(after_step(0, {true, true, true}).step_ns(20 * period, 200 * us));

@@ -26,7 +26,7 @@ ClockGate running_gate() {
     return gate;
 }
 
-TEST_CASE("stamps of a steady clock pass as they are") {
+TEST_CASE("stamps of a steady clock are unchanged") {
     ClockGate gate = make_gate();
     for (std::int64_t i = 0; i < 100; ++i) {
         CHECK(gate.accept(i * ms, i * ms + 300) == i * ms);
@@ -35,19 +35,19 @@ TEST_CASE("stamps of a steady clock pass as they are") {
     CHECK_FALSE(gate.doubtful());
 }
 
-TEST_CASE("frames that overtake each other, and frames read late, pass") {
+TEST_CASE("frames that overtake each other, and frames read late, are accepted") {
     ClockGate gate = running_gate();
     CHECK(gate.accept(100 * second + 8 * ms, 100 * second + 10 * ms) == 100 * second + 8 * ms);
     CHECK(gate.accept(100 * second + 11 * ms, 101 * second) == 100 * second + 11 * ms); // a late reader
     CHECK(gate.accept(100 * second + 990 * ms, 101 * second) == 100 * second + 990 * ms);
 }
 
-TEST_CASE("a stamp a little ahead of the reader's time is taken for that time") {
+TEST_CASE("a stamp slightly ahead of the reader's time is limited to that time") {
     ClockGate gate = running_gate();
     CHECK(gate.accept(100 * second + 12 * ms, 100 * second + 11 * ms) == 100 * second + 11 * ms);
 }
 
-TEST_CASE("a single wrong stamp is refused and forgotten") {
+TEST_CASE("a single wrong stamp is rejected and has no further effect") {
     ClockGate gate = running_gate();
     CHECK_FALSE(gate.accept(94 * second, 100 * second + 11 * ms).has_value());
     CHECK(gate.doubtful());
@@ -58,7 +58,7 @@ TEST_CASE("a single wrong stamp is refused and forgotten") {
     CHECK(gate.adopted() == 0);
 }
 
-TEST_CASE("a clock that was set is followed after several consistent frames, and its stamps go on") {
+TEST_CASE("a new clock is adopted after several consistent frames, and the stamps continue") {
     for (const std::int64_t jump : {-6 * second, 6 * second, -50 * ms}) {
         ClockGate gate = running_gate();
         for (int i = 1; i <= 30; ++i) {
@@ -72,7 +72,7 @@ TEST_CASE("a clock that was set is followed after several consistent frames, and
     }
 }
 
-TEST_CASE("stamps that do not go on from each other are never adopted") {
+TEST_CASE("inconsistent stamps are never adopted") {
     ClockGate gate = running_gate();
     for (std::int64_t i = 0; i < 1000; ++i) {
         const std::int64_t wild = i % 2 == 0 ? 1 * second : 2 * second;
@@ -84,7 +84,7 @@ TEST_CASE("stamps that do not go on from each other are never adopted") {
     CHECK(gate.adopted() == 0);
 }
 
-TEST_CASE("a first stamp far from the reader's time is not believed at once") {
+TEST_CASE("a first stamp far from the reader's time is rejected at first") {
     for (const std::int64_t start : {std::int64_t{0}, 200 * second, std::numeric_limits<std::int64_t>::min(),
                                      std::numeric_limits<std::int64_t>::max() - 50 * ms}) {
         ClockGate gate = make_gate();

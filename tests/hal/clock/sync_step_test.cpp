@@ -21,14 +21,14 @@ SyncStep running(int cycles) {
 
 TEST_CASE("no answer is in step before the first SYNC") { CHECK_FALSE(SyncStep().answer(5 * us)); }
 
-TEST_CASE("a lost answer does not refuse later answers at the usual time") {
+TEST_CASE("after a lost answer, later answers at the usual time are in step") {
     SyncStep step = running(50);
     step.sync(50 * period);
     step.sync(51 * period);
     CHECK(step.answer(51 * period + 420 * us));
 }
 
-TEST_CASE("answers that came later while the bus was full do not become the usual time") {
+TEST_CASE("late answers on a loaded bus do not change the usual time") {
     SyncStep step = running(50);
     int cycle = 50;
     for (; cycle < 80; ++cycle) {
@@ -42,7 +42,7 @@ TEST_CASE("answers that came later while the bus was full do not become the usua
     }
 }
 
-TEST_CASE("an answer stamped before its SYNC is not in step, and teaches no time") {
+TEST_CASE("an answer stamped before its SYNC is not in step and does not change the usual time") {
     SyncStep step = running(50);
     step.sync(50 * period + 3000 * us); // a stamp ahead
     CHECK_FALSE(step.answer(50 * period + 400 * us));
@@ -63,7 +63,7 @@ TEST_CASE("an answer after the next SYNC is not assigned to that SYNC") {
     CHECK(step.answer(52 * period + 400 * us));
 }
 
-TEST_CASE("where all answers are a period late none is in step, until two come between two SYNCs") {
+TEST_CASE("if all answers are a period late, none is in step until two come between two SYNCs") {
     SyncStep step = running(50);
     step.sync(50 * period);
     for (int cycle = 51; cycle < 140; ++cycle) {
@@ -93,7 +93,7 @@ TEST_CASE("after a lost answer, one that is a period late is not assigned to a l
     CHECK_FALSE(step.answer(52 * period + 400 * us)); // to SYNC 51
 }
 
-TEST_CASE("an answer that comes just before the next SYNC is in step, if answers take that long") {
+TEST_CASE("an answer just before the next SYNC is in step, if that is the usual time") {
     SyncStep step;
     for (int cycle = 0; cycle < 50; ++cycle) {
         step.sync(cycle * period);
@@ -113,7 +113,7 @@ TEST_CASE("after a lost SYNC, its answer is not assigned to the SYNC before") {
     CHECK(step.answer(51 * period + 400 * us));
 }
 
-TEST_CASE("two answers between which a SYNC was lost do not show that a device has caught up") {
+TEST_CASE("two answers with a lost SYNC between them do not prove that a device caught up") {
     SyncStep step = running(50);
     step.sync(50 * period);
     for (int cycle = 51; cycle < 200; ++cycle) { // from here on each answer is that to the SYNC before
@@ -124,7 +124,7 @@ TEST_CASE("two answers between which a SYNC was lost do not show that a device h
     }
 }
 
-TEST_CASE("an answer and a copy of the one before do not show that a device has caught up") {
+TEST_CASE("an answer and a copy of the one before do not prove that a device caught up") {
     SyncStep step = running(50);
     step.sync(50 * period);
     for (int cycle = 51; cycle < 200; ++cycle) { // from here on each answer is that to the SYNC before
@@ -136,7 +136,7 @@ TEST_CASE("an answer and a copy of the one before do not show that a device has 
     }
 }
 
-TEST_CASE("an answer is a copy where it has the data of one of the two before") {
+TEST_CASE("an answer with the data of one of the two before may be a copy") {
     AnswerContents contents;
     const auto frame = [](std::uint8_t value) {
         Frame one;

@@ -57,7 +57,7 @@ TEST_CASE("the motor number of a CubeMars motor in MIT mode is the whole of byte
           Kind::nothing);
 }
 
-TEST_CASE("a CubeMars motor may answer on the identifier of its commands and byte 0 tells them apart") {
+TEST_CASE("a CubeMars motor may answer on the identifier of its commands; byte 0 distinguishes them") {
     CubemarsMitMotor::Config config = mit_motor().config();
     config.feedback_id = 2;
     config.shared_feedback_id = false;
@@ -116,7 +116,7 @@ TEST_CASE("a torque constant makes the currents of a CubeMars servo torques") {
     CHECK(CubemarsServo(config).decode_torque(command).value() == Approx(1.035));
 }
 
-TEST_CASE("an error of a CubeMars servo refuses its values") {
+TEST_CASE("an error of a CubeMars servo invalidates its values") {
     for (unsigned error = 1; error < 256; ++error) {
         const JointValue value = servo().decode(upload(static_cast<std::uint8_t>(error))).joint[0];
         REQUIRE(value.position_reason == (error == 5 ? Reason::encoder_fault : Reason::device_fault));
@@ -138,7 +138,7 @@ TEST_CASE("commands to a CubeMars servo are not decoded as feedback") {
     CHECK(servo().decode(standard).kind == Kind::nothing);
 }
 
-TEST_CASE("without a packet number a CubeMars servo's feedback is that of eight bytes") {
+TEST_CASE("without a packet number, a frame of eight bytes is a CubeMars servo's feedback") {
     CubemarsServo::Config config = servo_config();
     config.packet = -1;
     for (const std::uint32_t id : {0x2968U, 0x0068U, 0x0968U}) {
@@ -150,7 +150,7 @@ TEST_CASE("without a packet number a CubeMars servo's feedback is that of eight 
           Kind::nothing); // a duty cycle
 }
 
-TEST_CASE("the ends of a CubeMars servo's numbers are no values") {
+TEST_CASE("CubeMars servo values at the end of their range are invalid") {
     for (const int counts : {32'000, -32'000}) {
         Frame frame = upload();
         store_big(frame.data.data(), static_cast<std::int16_t>(counts));

@@ -67,7 +67,7 @@ TEST_CASE("the command of the moteus documentation is a command and its stiffnes
     CHECK_FALSE(controller().decode_torque(command));
 }
 
-TEST_CASE("moteus registers come in any order and any type") {
+TEST_CASE("moteus registers are decoded in any order and type") {
     // torque, then velocity, as float; position as int32; mode as int8; padding between them
     const JointValue mixed = value_of("2d030000c03f50" // 1.5 N·m
                                       "2d020000003f"   // 0.5 turns/s
@@ -105,7 +105,7 @@ TEST_CASE("moteus registers come in any order and any type") {
               .effort == Approx(1.5));
 }
 
-TEST_CASE("a moteus value without a number is no value") {
+TEST_CASE("a moteus value of NaN or the most negative integer is invalid") {
     for (const char* const hex : {"210180",
                                   "250100"
                                   "80",
@@ -139,7 +139,7 @@ Decoded third_reply(MoteusController& device, const Frame& frame) {
     return device.decode(frame);
 }
 
-TEST_CASE("a moteus value is valid in the modes that operate and without a fault") {
+TEST_CASE("a moteus value is valid in operating modes without a fault") {
     for (unsigned mode = 0; mode < 256; ++mode) {
         MoteusController device = controller();
         device.decode(flexible(0x100, {0x21, 0x00, static_cast<std::uint8_t>(mode)}));
@@ -191,7 +191,7 @@ TEST_CASE("malformed moteus replies are rejected as a whole") {
     }
 }
 
-TEST_CASE("moteus replies to another host and of another controller are not taken for the own") {
+TEST_CASE("moteus replies to another host or from another controller are ignored") {
     const Bytes bytes = bytes_of("2d010000003f");
     CHECK(controller().decode(flexible(0x102, bytes)).kind == Kind::nothing);
     CHECK(MoteusController::is_reply_to_other({.id = 1}, flexible(0x102, bytes)));
@@ -206,7 +206,7 @@ TEST_CASE("moteus replies to another host and of another controller are not take
     CHECK(controller().decode(classic).reason == Reason::wrong_frame_type);
 }
 
-TEST_CASE("a torque command to a moteus has no stiffness and damping and asks for a reply") {
+TEST_CASE("a torque command to a moteus has no stiffness and damping and requests a reply") {
     const MoteusController device({.id = 3, .joint = 0, .motor_per_joint = -2});
     const Frame command = device.encode_torque(4);
     CHECK(command.id == 0x8003);
@@ -227,7 +227,7 @@ TEST_CASE("a torque command to a moteus has no stiffness and damping and asks fo
     CHECK(device.command(flexible(0x8004, bytes_of("010000"))) == MotorCommand::none);
 }
 
-TEST_CASE("a flipped bit in the header of a moteus' sub-frame makes no value of another register") {
+TEST_CASE("a flipped bit in a moteus sub-frame's header gives no value of a wrong register") {
     constexpr double torque = 0.25;
     std::array<JointValue, 1> values{};
     values[0].position_rad = 1.5;
@@ -252,7 +252,7 @@ TEST_CASE("a flipped bit in the header of a moteus' sub-frame makes no value of 
     }
 }
 
-TEST_CASE("a moteus that is asked for other registers is understood from the third reply on") {
+TEST_CASE("a changed layout of moteus replies is accepted from the third reply on") {
     MoteusController device = controller();
     const Frame before = reply("2d01000080be2d030000003f"); // position and torque as float
     const Frame after = reply("2c0300000000003f");          // not this one's layout
@@ -276,7 +276,7 @@ Frame polled(unsigned reg) {
     return flexible(0x100, bytes);
 }
 
-TEST_CASE("a moteus of which one more register is polled in turn loses nothing after the first rounds") {
+TEST_CASE("polling one more moteus register in turn loses no values after the first rounds") {
     const std::array<unsigned, 12> other{0x04, 0x05, 0x06, 0x07, 0x0A, 0x0D,
                                          0x0E, 0x10, 0x20, 0x21, 0x22, 0x30};
     const std::array<unsigned, 12> state{0x00, 0x02, 0x0E, 0x0F, 0x04, 0x05,
@@ -293,7 +293,7 @@ TEST_CASE("a moteus of which one more register is polled in turn loses nothing a
     }
 }
 
-TEST_CASE("eight layouts of a moteus' values, in turn, all count after two rounds") {
+TEST_CASE("eight alternating layouts of moteus replies are all accepted after two rounds") {
     const std::array<const char*, 8> layouts{"2d01000080be", "2d030000003f",      "25010010",
                                              "25030010",     "250100102503e803",  "2901001000002503e803",
                                              "2101102103e8", "2d01000080be2103e8"};
@@ -306,7 +306,7 @@ TEST_CASE("eight layouts of a moteus' values, in turn, all count after two round
     }
 }
 
-TEST_CASE("a flipped bit makes no fault of a moteus' temperature") {
+TEST_CASE("a flipped bit does not turn a moteus' temperature into a fault") {
     MoteusController device = controller();
     REQUIRE(device.decode(reply("2d01000080be")).joint[0].position_reason == Reason::ok);
     device.decode(reply("210e2850"));                               // 40 degrees

@@ -85,7 +85,7 @@ TEST_CASE("the second Piper on a bus has its own range of identifiers") {
     CHECK(pair(2).decode(angles(0x2A6)).kind == Kind::nothing);
 }
 
-TEST_CASE("a Piper's drive refuses its joint's values while it is not enabled or has a fault") {
+TEST_CASE("a Piper's values are rejected while the drive is not enabled or has a fault") {
     for (unsigned status = 0; status < 256; ++status) {
         PiperPair device = pair(1);
         device.decode(slow(static_cast<std::uint8_t>(status)));
@@ -107,7 +107,7 @@ TEST_CASE("a Piper's drive refuses its joint's values while it is not enabled or
     }
 }
 
-TEST_CASE("a joint that a Piper does not hear has no values") {
+TEST_CASE("a joint that does not communicate with its Piper has no values") {
     PiperPair device = pair(1);
     CHECK(device.decode(frame_of(0x2A1, {1, 5, 1, 0, 0, 0, 0, 0x08})).reason ==
           Reason::encoder_fault); // joint 4
@@ -129,7 +129,7 @@ TEST_CASE("a Piper's frames have eight classic bytes") {
     }
 }
 
-TEST_CASE("a Piper's positions at an end of their numbers are none") {
+TEST_CASE("a Piper's positions at an end of their range are invalid") {
     CHECK(pair(1).decode(frame_of(0x2A6, {0x7F, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0})).joint[0].position_reason ==
           Reason::position_out_of_range);
     CHECK(pair(1).decode(frame_of(0x2A6, {0x7F, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0})).joint[1].raw_zero);
@@ -137,7 +137,7 @@ TEST_CASE("a Piper's positions at an end of their numbers are none") {
           Reason::output_saturated);
 }
 
-TEST_CASE("a Piper's angles are of the joint with its direction and zero") {
+TEST_CASE("a Piper's angles are converted with the joint's direction and zero") {
     PiperPair::Config config;
     config.sign = {-1, 1};
     config.zero_rad = {0.5, 0};

@@ -49,7 +49,7 @@ TEST_CASE("an RMD motor's status has current and speed and its angle of one degr
     CHECK(coarse.step_rad == Approx(degree).epsilon(1e-13));
 }
 
-TEST_CASE("an RMD motor's encoder counts are positions where they are described") {
+TEST_CASE("an RMD motor's encoder counts are positions if configured") {
     const Frame answer = frame_of(0x245, {0x60, 0, 0, 0, 0x00, 0x00, 0x01, 0x00}); // 65536
     CHECK(motor().decode(answer).kind == Kind::nothing);
     CHECK(motor(RmdDriver::v3, RmdPosition::encoder).decode(answer).joint[0].position_rad ==
@@ -84,7 +84,7 @@ TEST_CASE("a V2 driver of an RMD motor answers on the identifier of the requests
     CHECK(turns.position_rad == Approx(-360 * degree).epsilon(1e-13));
 }
 
-TEST_CASE("an RMD motor's errors refuse its values until it reports none twice") {
+TEST_CASE("an RMD motor's errors invalidate its values until it reports none twice") {
     RmdMotor faulty = motor();
     CHECK(faulty.decode(frame_of(0x245, {0x9A, 0x32, 0, 1, 0xE5, 0x01, 0x02, 0x00})).reason ==
           Reason::device_fault); // 0x0002: stall
@@ -102,7 +102,7 @@ TEST_CASE("an RMD motor's errors refuse its values until it reports none twice")
     CHECK(old.decode(status_answer(0x145)).joint[0].effort_reason == Reason::device_fault);
 }
 
-TEST_CASE("an RMD motor's answer with errors that exclude each other is another answer") {
+TEST_CASE("an RMD motor's answer with contradictory errors is rejected") {
     RmdMotor motor_v3 = motor();
     const Frame angle = frame_of(0x245, {0x92, 0, 0, 0, 0x18, 0xFC, 0xFF, 0xFF}); // -10 degrees
     Frame flipped = angle;
@@ -115,7 +115,7 @@ TEST_CASE("an RMD motor's answer with errors that exclude each other is another 
     CHECK(old.decode(status_answer(0x145)).joint[0].effort_reason == Reason::ok);
 }
 
-TEST_CASE("other answers of an RMD motor are no values") {
+TEST_CASE("other answers of an RMD motor give no values") {
     for (unsigned command = 0; command < 256; ++command) {
         const bool value =
             command == 0x92 || command == 0x9A || command == 0x9C || (command >= 0xA1 && command <= 0xA9);

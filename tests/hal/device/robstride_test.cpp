@@ -67,7 +67,7 @@ TEST_CASE("a Robstride value is valid in run mode only") {
           Reason::device_fault);
 }
 
-TEST_CASE("each Robstride fault bit refuses the values and those of the encoder name it") {
+TEST_CASE("each Robstride fault bit invalidates the values, and encoder bits give encoder_fault") {
     for (unsigned bit = 0; bit < 6;
          ++bit) { // voltage, current, temperature, magnetic encoder, Hall, calibration
         const JointValue value = value_of(feedback(2, 1U << bit, {0xA0, 1, 0x90, 2, 0x70, 3, 1, 29}));
@@ -77,7 +77,7 @@ TEST_CASE("each Robstride fault bit refuses the values and those of the encoder 
     }
 }
 
-TEST_CASE("a Robstride angle saturates at four pi and is then no position") {
+TEST_CASE("a Robstride angle saturated at 4π is invalid") {
     for (const std::uint8_t end : {std::uint8_t{0}, std::uint8_t{255}}) {
         const JointValue value = value_of(feedback(2, 0, {end, end, 0x90, 2, 0x70, 3, 1, 29}));
         CHECK(value.position_reason == Reason::position_out_of_range);
@@ -101,7 +101,7 @@ TEST_CASE("Robstride parameters are little-endian and are not decoded as feedbac
     }
 }
 
-TEST_CASE("answers of a Robstride motor to another host are not taken for those to its own") {
+TEST_CASE("answers of a Robstride motor to another host are ignored") {
     const Frame other = private_frame(2, 2U << 14 | 0x7F, 0xFE, {0xA0, 1, 0x90, 2, 0x70, 3, 1, 29});
     CHECK(wrist().decode(other).kind == Kind::nothing);
     CHECK(wrist().concerns(other));
@@ -112,7 +112,7 @@ TEST_CASE("answers of a Robstride motor to another host are not taken for those 
     CHECK_FALSE(wrist().concerns(neighbour));
 }
 
-TEST_CASE("a Robstride fault frame counts with host and motor in either order") {
+TEST_CASE("a Robstride fault frame is accepted with host and motor in either order") {
     for (const auto& [data, target] : {std::pair(0xFDU, 0x7FU), std::pair(0x7FU, 0xFDU)}) {
         RobstrideMotor motor = wrist();
         CHECK(motor.decode(sound()).joint[0].position_reason == Reason::ok);
@@ -125,7 +125,7 @@ TEST_CASE("a Robstride fault frame counts with host and motor in either order") 
     }
 }
 
-TEST_CASE("a Robstride fault ends where the motor is enabled again") {
+TEST_CASE("a Robstride fault ends when the motor is enabled again") {
     RobstrideMotor motor = wrist();
     motor.decode(sound());
     motor.decode(private_frame(21, 0x7F, 0xFD, {1, 0, 0, 0, 0, 0, 0, 0}));
@@ -216,7 +216,7 @@ RobstrideMitMotor mit_motor(int id) {
                               .shared_feedback_id = true});
 }
 
-TEST_CASE("a Robstride motor in MIT mode has one temperature where Damiao has two") {
+TEST_CASE("a Robstride motor in MIT mode has one temperature of two bytes") {
     const Frame frame = mit_feedback(3, 285);
     const JointValue value = mit_motor(3).decode(frame).joint[0];
     CHECK(value.position_reason == Reason::ok);
@@ -228,7 +228,7 @@ TEST_CASE("a Robstride motor in MIT mode has one temperature where Damiao has tw
     CHECK(frame.data[7] == 29); // as Damiao's rotor 29 °C
 }
 
-TEST_CASE("Robstride motors in MIT mode share an identifier and byte 0 tells them apart") {
+TEST_CASE("Robstride motors in MIT mode share an identifier; byte 0 distinguishes them") {
     CHECK(mit_motor(3).decode(mit_feedback(4, 285)).kind == Kind::nothing);
     CHECK(mit_motor(4).decode(mit_feedback(4, 285)).kind == Kind::values);
     CHECK_FALSE(mit_motor(3).claims(0xFD));
@@ -239,7 +239,7 @@ TEST_CASE("Robstride motors in MIT mode share an identifier and byte 0 tells the
     CHECK(mit_motor(3).decode(command).kind == Kind::nothing);
 }
 
-TEST_CASE("a poll that clears the faults of a Robstride motor is seen as that and is not a value") {
+TEST_CASE("a poll that clears the faults of a Robstride motor is recognised and gives no value") {
     const Frame clear = frame_of(0x003, {255, 255, 255, 255, 255, 255, 255, 0xFB});
     CHECK(mit_motor(3).decode(clear).kind == Kind::nothing);
     CHECK(mit_motor(3).command(clear) == MotorCommand::clear_faults);

@@ -134,7 +134,7 @@ TEST_CASE("fault 22: no second sample is assembled for the same time") {
     CHECK(arm.run(10));
 }
 
-TEST_CASE("faults 22, 25 and 23: samples go on after a bus-off while the clock was set back and forward") {
+TEST_CASE("faults 22, 25 and 23: samples continue after a bus-off with clock steps back and forward") {
     DFDYN_SEEDED_ENGINE(engine);
     for (std::size_t before = 17; before <= 20; ++before) { // frames by the clock that was set back
         StampedBench bench(engine);

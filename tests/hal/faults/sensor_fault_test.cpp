@@ -21,7 +21,7 @@ auto with_wrench_of(const Frames& earlier) {
 
 } // namespace
 
-TEST_CASE("fault 14: a sensor that repeats itself with new time stamps is not learned") {
+TEST_CASE("fault 14: repeated sensor values with new time stamps are not learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();

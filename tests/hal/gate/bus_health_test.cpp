@@ -7,7 +7,7 @@ namespace bus_health_test {
 
 using namespace dfdyn::hal;
 
-TEST_CASE("a bus that hears nothing says why") {
+TEST_CASE("a bus that receives nothing reports the reason") {
     BusHealth health;
     CHECK(health.reason() == Reason::ok);
     health.update(BusState::off, {});
@@ -18,7 +18,7 @@ TEST_CASE("a bus that hears nothing says why") {
     CHECK(health.reason() == Reason::ok);
 }
 
-TEST_CASE("a passive bus is degraded and still good") {
+TEST_CASE("an error-passive bus is degraded but valid") {
     BusHealth health;
     CHECK_FALSE(health.degraded());
     for (const BusState state : {BusState::warning, BusState::passive}) {
@@ -49,7 +49,7 @@ TEST_CASE("lost frames are reported once, and counted from the start") {
     CHECK(health.losses() == 5);
 }
 
-TEST_CASE("lost arbitration, refused sends and error frames are no loss") {
+TEST_CASE("lost arbitration, refused sends and error frames are not counted as losses") {
     BusHealth health;
     BusCounters counters;
     health.update(BusState::active, counters);

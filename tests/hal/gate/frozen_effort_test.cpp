@@ -11,7 +11,7 @@ using dfdyn::hal::FrozenEffortGate;
 double position(int tick) { return 2e-3 * tick; }
 double effort(int tick) { return std::round(500 * std::sin(0.01 * tick)) / 100; }
 
-TEST_CASE("an effort that repeats its value while the joint moves is frozen until it changes") {
+TEST_CASE("an effort that repeats its value in motion is frozen until it changes") {
     FrozenEffortGate gate(100);
     for (int tick = 0; tick < 2000; ++tick) {
         CHECK_FALSE(gate.frozen(effort(tick), position(tick)));
@@ -25,21 +25,21 @@ TEST_CASE("an effort that repeats its value while the joint moves is frozen unti
     CHECK_FALSE(gate.frozen(effort(2500), position(2500)));
 }
 
-TEST_CASE("the effort of a joint at rest may be constant for ever") {
+TEST_CASE("a constant effort of a joint at rest is accepted") {
     FrozenEffortGate gate(100);
     for (int tick = 0; tick < 5000; ++tick) {
         CHECK_FALSE(gate.frozen(3, 0.5));
     }
 }
 
-TEST_CASE("before it has learned the device's resolution, the limit decides") {
+TEST_CASE("the configured limit applies until the device's resolution is learned") {
     FrozenEffortGate gate(100);
     for (int tick = 0; tick < 150; ++tick) {
         CHECK(gate.frozen(3, position(tick)) == (tick >= 99));
     }
 }
 
-TEST_CASE("the device's resolution is learned at rest too, where the effort changes") {
+TEST_CASE("the device's resolution is also learned at rest, if the effort changes") {
     FrozenEffortGate gate(100);
     for (int tick = 0; tick < 200; ++tick) {
         CHECK_FALSE(gate.frozen(0.01 * (tick % 3), 0.5));
@@ -51,7 +51,7 @@ TEST_CASE("the device's resolution is learned at rest too, where the effort chan
     CHECK(accepted < 20);
 }
 
-TEST_CASE("a device that holds its values in motion, but not at rest, is not refused for ever") {
+TEST_CASE("a device that holds its values in motion only is rejected temporarily") {
     FrozenEffortGate gate(100);
     for (int tick = 0; tick < 200; ++tick) {
         CHECK_FALSE(gate.frozen(0.01 * (tick % 3), 0.5));
@@ -68,7 +68,7 @@ TEST_CASE("a device that holds its values in motion, but not at rest, is not ref
     CHECK(late > 50);
 }
 
-TEST_CASE("a frozen effort is found after the same time where values of it are lost") {
+TEST_CASE("lost values do not delay the detection of a frozen effort") {
     constexpr std::int64_t period = 2'000'000;
     const auto found_at = [](int kept_of_three) {
         FrozenEffortGate gate(100, period);
@@ -86,7 +86,7 @@ TEST_CASE("a frozen effort is found after the same time where values of it are l
     CHECK(found_at(1) <= found_at(3) + 3);
 }
 
-TEST_CASE("an effort that returns from a silence with the same value is not frozen") {
+TEST_CASE("an equal effort after a silence is not frozen") {
     constexpr std::int64_t period = 2'000'000;
     FrozenEffortGate gate(100, period);
     for (int tick = 0; tick < 2000; ++tick) {

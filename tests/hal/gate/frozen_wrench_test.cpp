@@ -7,7 +7,7 @@ namespace frozen_test {
 
 using Gate = dfdyn::hal::FrozenWrenchGate<3>;
 
-TEST_CASE("a sensor that repeats itself is frozen from the limit on, until it moves") {
+TEST_CASE("a sensor that repeats its values is frozen from the limit on, until they change") {
     Gate gate(4);
     const Gate::Raw stuck{7, -3, 0};
     for (int reading = 1; reading <= 10; ++reading) {
@@ -20,7 +20,7 @@ TEST_CASE("a sensor that repeats itself is frozen from the limit on, until it mo
     CHECK(gate.count() == 2);
 }
 
-TEST_CASE("a frozen sensor with a flipped bit in between is frozen still") {
+TEST_CASE("a flipped bit does not end a frozen sensor's row") {
     Gate gate(4);
     const Gate::Raw stuck{7, -3, 0};
     for (int reading = 1; reading <= 4; ++reading) {
@@ -31,7 +31,7 @@ TEST_CASE("a frozen sensor with a flipped bit in between is frozen still") {
     CHECK(gate.count() == 1);
 }
 
-TEST_CASE("a frozen sensor with three flipped bits in a row is frozen still") {
+TEST_CASE("a sensor that freezes again at its frozen values after three flipped bits is rejected") {
     Gate gate(4);
     const Gate::Raw stuck{7, -3, 0};
     for (int reading = 1; reading <= 4; ++reading) {
@@ -48,7 +48,7 @@ TEST_CASE("a frozen sensor with three flipped bits in a row is frozen still") {
     CHECK_FALSE(gate.frozen(stuck));
 }
 
-TEST_CASE("a sensor that now and then repeats a reading is not frozen") {
+TEST_CASE("a sensor that sometimes repeats a reading is not frozen") {
     Gate gate(4);
     for (int reading = 0; reading < 1000; ++reading) {
         CHECK_FALSE(gate.frozen({reading / 3, 0, 0}));
@@ -56,7 +56,7 @@ TEST_CASE("a sensor that now and then repeats a reading is not frozen") {
     CHECK(gate.count() == 0);
 }
 
-TEST_CASE("three equal readings over the periods of the limit are frozen, whatever came between") {
+TEST_CASE("three equal readings that span the limit are frozen, despite others between them") {
     dfdyn::hal::FrozenWrenchGate<3> gate(5, 2'000'000);
     const Gate::Raw stuck{7, -3, 0};
     CHECK_FALSE(gate.frozen(stuck, 0));
@@ -66,13 +66,13 @@ TEST_CASE("three equal readings over the periods of the limit are frozen, whatev
     CHECK(gate.count() == 1);
 }
 
-TEST_CASE("zeros freeze as any other value does") {
+TEST_CASE("repeated zeros are frozen like any other value") {
     Gate gate(2);
     CHECK_FALSE(gate.frozen({0, 0, 0}));
     CHECK(gate.frozen({0, 0, 0}));
 }
 
-TEST_CASE("a live coarse sensor that returns to the values at which it was frozen is good after a while") {
+TEST_CASE("a coarse sensor that returns to its frozen values is accepted after some readings") {
     for (const int pause : {3, 4}) { // other values between them
         for (const int times : {1, 2}) {
             CAPTURE(pause, times);

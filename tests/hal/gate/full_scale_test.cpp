@@ -18,7 +18,7 @@ Gate complete_gate() {
     return gate;
 }
 
-TEST_CASE("full scales are used once all are known") {
+TEST_CASE("full scales are valid once all are known") {
     Gate gate({{{10, 5000}, {10, 5000}, {0.5, 500}}});
     for (const int channel : {2, 0, 1}) {
         CHECK(gate.reason() == Reason::waiting_for_full_scale);
@@ -29,7 +29,7 @@ TEST_CASE("full scales are used once all are known") {
     CHECK(complete_gate().changed() == 0);
 }
 
-TEST_CASE("a full scale that cannot be is refused, also before all are known") {
+TEST_CASE("an implausible full scale is rejected, also before all are known") {
     Gate first({{{10, 5000}, {10, 5000}, {0.5, 500}}});
     first.report(1, 0);
     CHECK(first.reason() == Reason::full_scale_implausible);
@@ -46,7 +46,7 @@ TEST_CASE("a full scale that cannot be is refused, also before all are known") {
     }
 }
 
-TEST_CASE("a full scale that changes is in doubt until all channels are reported again, and agree") {
+TEST_CASE("after a changed full scale, none is valid until all channels are reported again consistently") {
     Gate gate = complete_gate();
     gate.report(0, 500);
     CHECK(gate.reason() == Reason::full_scale_contradicted);
@@ -60,7 +60,7 @@ TEST_CASE("a full scale that changes is in doubt until all channels are reported
     CHECK(gate[0] == 1500);
 }
 
-TEST_CASE("full scales that are described are never replaced") {
+TEST_CASE("described full scales are never replaced") {
     Gate gate({{{10, 5000}, {10, 5000}, {0.5, 500}}});
     gate.describe(0, 1500);
     gate.describe(1, 1500);

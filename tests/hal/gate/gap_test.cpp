@@ -5,7 +5,7 @@
 
 namespace gap_test {
 
-TEST_CASE("a hole between two values is seen and counted") {
+TEST_CASE("a gap between two values is detected and counted") {
     dfdyn::hal::GapGate gate(10);
     CHECK_FALSE(gate.ends(1'000'000)); // the first
     CHECK_FALSE(gate.ends(1'000'010));

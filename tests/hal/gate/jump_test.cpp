@@ -20,21 +20,21 @@ JumpGate<1> ready_gate(int ticks) {
     return gate;
 }
 
-TEST_CASE("a single output far from those before is refused, the next good one believed") {
+TEST_CASE("a single output far from those before is rejected, and the next good one accepted") {
     JumpGate<1> gate = ready_gate(500);
     CHECK(gate.jumps({force(500) + 12}, 1000 * ms));
     CHECK(gate.count() == 1);
     CHECK_FALSE(gate.jumps({force(501)}, 1002 * ms));
 }
 
-TEST_CASE("a force that did jump is believed once four outputs agree on it") {
+TEST_CASE("a real jump of the force is accepted after four consistent outputs") {
     JumpGate<1> gate = ready_gate(500);
     for (int tick = 500; tick < 510; ++tick) {
         CHECK(gate.jumps({force(tick) + 12}, 2 * ms * tick) == (tick < 503));
     }
 }
 
-TEST_CASE("after a silence three outputs must agree") {
+TEST_CASE("after a silence, three consistent outputs are required") {
     JumpGate<1> gate = ready_gate(500);
     CHECK(gate.jumps({100}, 2 * ms * 510));
     CHECK(gate.jumps({force(511)}, 2 * ms * 511));
@@ -42,7 +42,7 @@ TEST_CASE("after a silence three outputs must agree") {
     CHECK_FALSE(gate.jumps({force(513)}, 2 * ms * 513));
 }
 
-TEST_CASE("a jump to an output that repeats itself bit for bit is not believed") {
+TEST_CASE("a jump to identical outputs is rejected") {
     JumpGate<1> gate = ready_gate(500);
     for (int tick = 500; tick < 520; ++tick) {
         CHECK(gate.jumps({force(500) + 12}, 2 * ms * tick));

@@ -62,7 +62,7 @@ TEST_CASE("a lost first half costs one wrench") {
     CHECK(gate.unpaired(1) == 1);
 }
 
-TEST_CASE("halves of two wrenches never make one") {
+TEST_CASE("halves of different wrenches are never paired") {
     PairGate gate(quiet_bus);
     push(gate, 0, 0); // its second half is lost, and the first of the next
     CHECK(push(gate, 1, 1) == Result::orphaned);
@@ -79,7 +79,7 @@ TEST_CASE("a sensor all of whose second halves are lost gives no wrench") {
     CHECK(gate.unpaired(0) == 99);
 }
 
-TEST_CASE("halves that overtook each other on the way are paired by their stamps") {
+TEST_CASE("halves that arrive out of order are paired by their stamps") {
     PairGate gate(quiet_bus);
     CHECK(push(gate, 0, 1) == Result::waiting);
     CHECK(push(gate, 0, 0) == Result::paired);
@@ -94,7 +94,7 @@ TEST_CASE("halves that were sent in the wrong order are not paired") {
     CHECK(gate.unpaired(0) + gate.unpaired(1) == 19);
 }
 
-TEST_CASE("halves without stamps of their own are paired in their order") {
+TEST_CASE("halves with a shared stamp are paired in their order") {
     PairGate gate(quiet_bus);
     for (int number = 0; number < 5; ++number) { // all read at once
         CHECK(gate.push(0, at_time(half(number, 0), 7 * us)) == Result::waiting);
@@ -105,7 +105,7 @@ TEST_CASE("halves without stamps of their own are paired in their order") {
     CHECK(gate.push(1, at_time(half(6, 1), 7 * us)) == Result::paired);
 }
 
-TEST_CASE("a second sender on the same identifiers is seen, and its halves are not mixed with the first's") {
+TEST_CASE("a second sender is detected, and its halves are not mixed with the first's") {
     for (const std::int64_t behind_us :
          {60, 300, 500}) { // interleaved; one wrench after the other; half a period apart
         PairGate gate(quiet_bus);
@@ -128,7 +128,7 @@ TEST_CASE("a second sender on the same identifiers is seen, and its halves are n
     }
 }
 
-TEST_CASE("the window's end still counts, and no more") {
+TEST_CASE("the end of the pairing window is included") {
     for (const std::int64_t late : {std::int64_t{0}, std::int64_t{1}}) {
         PairGate gate(quiet_bus);
         gate.push(0, at_time(half(0, 0), 0));
@@ -137,7 +137,7 @@ TEST_CASE("the window's end still counts, and no more") {
     }
 }
 
-TEST_CASE("after a reset a half that waited is forgotten") {
+TEST_CASE("a reset discards a waiting half") {
     PairGate gate(quiet_bus);
     push(gate, 0, 0);
     gate.reset();
@@ -172,7 +172,7 @@ bool same_wrench(const PairGate& gate) {
 
 } // namespace
 
-TEST_CASE("on a loaded bus, where wrenches are anything from a third to 1.6 periods apart, all are paired") {
+TEST_CASE("on a loaded bus, wrenches 0.33 to 1.6 periods apart are all paired") {
     DFDYN_SEEDED_ENGINE(engine);
     PairGate gate(loaded_bus);
     constexpr int start = 50; // until a frame has waited for long
@@ -186,7 +186,7 @@ TEST_CASE("on a loaded bus, where wrenches are anything from a third to 1.6 peri
     CHECK(gate.doubles() == 0);
 }
 
-TEST_CASE("on a loaded bus halves of two wrenches never make one, whatever is lost") {
+TEST_CASE("on a loaded bus with losses, halves of different wrenches are never paired") {
     DFDYN_SEEDED_ENGINE(engine);
     PairGate gate(loaded_bus);
     std::bernoulli_distribution lost(0.3);

@@ -7,7 +7,7 @@
 
 namespace range_test {
 
-TEST_CASE("values are within their ranges, or refused and counted") {
+TEST_CASE("values beyond their ranges are rejected and counted") {
     dfdyn::hal::RangeGate<2> gate({{{-1, 2}, {0, 10}}});
     CHECK(gate.within({-1, 0}));
     CHECK(gate.within({2, 10}));

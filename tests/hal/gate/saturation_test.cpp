@@ -9,7 +9,7 @@ namespace saturation_test {
 
 using Raw = std::array<std::int32_t, 3>;
 
-TEST_CASE("a reading is saturated where the device says so or a raw value is at its end") {
+TEST_CASE("a reading is saturated if the device reports it or a raw value is at its end") {
     dfdyn::hal::SaturationGate gate;
     CHECK_FALSE(gate.saturated(false, Raw{0, 32766, -32766}));
     CHECK(gate.saturated(true, Raw{0, 0, 0}));

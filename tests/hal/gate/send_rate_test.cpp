@@ -38,7 +38,7 @@ TEST_CASE("one sender is never suspected for any delays, and its earliest send t
     }
 }
 
-TEST_CASE("two senders are detected within three periods, with any offset, while they send") {
+TEST_CASE("two senders are detected within three periods, for any offset") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::int64_t delay_ns : {130 * us, 500 * us, 780 * us}) {
         for (const std::int64_t offset_ns : {60 * us, 300 * us, 500 * us, 800 * us, 940 * us}) {
@@ -61,7 +61,7 @@ TEST_CASE("two senders are detected within three periods, with any offset, while
     }
 }
 
-TEST_CASE("where frames wait little, a second sender is seen at its first frame") {
+TEST_CASE("with short delays, a second sender is detected at its first frame") {
     for (const std::int64_t offset_ns : {60 * us, 500 * us, 700 * us}) {
         SendRateGate gate({.period_ns = period_ns, .delay_ns = 200 * us});
         for (std::int64_t k = 0; k < 10; ++k) {
@@ -71,7 +71,7 @@ TEST_CASE("where frames wait little, a second sender is seen at its first frame"
     }
 }
 
-TEST_CASE("frames that share a stamp, or come with an older one, are no evidence") {
+TEST_CASE("frames with a repeated or an older stamp are no evidence") {
     SendRateGate gate({.period_ns = period_ns, .delay_ns = 200 * us});
     for (int frame = 0; frame < 10; ++frame) {
         CHECK_FALSE(gate.too_soon(10 * period_ns));

@@ -5,7 +5,7 @@
 
 namespace staleness_test {
 
-TEST_CASE("a value is valid up to its limit, then it is stale") {
+TEST_CASE("a value is valid up to its age limit, and then stale") {
     dfdyn::hal::StalenessGate gate(10);
     CHECK_FALSE(gate.stale(100, 100));
     CHECK_FALSE(gate.stale(100, 110));

@@ -8,7 +8,7 @@ namespace unexpected_frames_test {
 
 using namespace dfdyn::hal;
 
-TEST_CASE("the first offender is kept, the others are counted") {
+TEST_CASE("the first unexpected frame is stored, and all are counted") {
     UnexpectedFrames offenders;
     CHECK(offenders.count() == 0);
     Frame frame = dfdyn::tests::frame_of(0x123, {1, 2, 3}, 77);
