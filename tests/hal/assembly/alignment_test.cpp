@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of one instant from devices with their own phases, rates and latencies.
+// Values at one time from devices with different phases, rates and latencies.
 #include "dfdyn/hal/device/icub_2foc.hpp"
 #include "dfdyn/hal/device/odrive.hpp"
 #include "dfdyn/hal/device/robotous_rft.hpp"
@@ -23,7 +23,7 @@ constexpr std::int64_t ms = 1000 * us;
 using Arm = SampleAssembly<float, 2, OdriveAxis, 2, WrenchOutput<RobotousRft, 16>>;
 
 double angle(double time_s) { return std::sin(3 * time_s); }
-double force(double time_s) { return 100 * angle(time_s); } // so that a wrong instant shows
+double force(double time_s) { return 100 * angle(time_s); } // steep, so that a wrong time shows
 double difference(float a, double b) { return std::abs(static_cast<double>(a) - b); }
 double seconds(std::int64_t time_ns) { return 1e-9 * static_cast<double>(time_ns); }
 
@@ -45,8 +45,8 @@ Arm make_arm() {
               .frozen_limit = 50}}}; // these forces have no noise, and are constant at their peaks
 }
 
-/// What the devices send between 0 and `end_ns`, by their stamps: joint 1 each 1 ms, joint 2 each 0.97 ms
-/// with jitter, the force each 1.03 ms, stamped after its latency.
+/// Returns the frames of the devices from 0 to `end_ns`, by stamp: joint 1 every 1 ms, joint 2 every 0.97 ms
+/// with jitter, the force every 1.03 ms, stamped after its latency.
 std::vector<Frame> traffic(std::int64_t end_ns, std::mt19937_64& engine) {
     std::vector<Frame> frames;
     std::array<OdriveAxis, 2> axes{OdriveAxis({.node = 1}), OdriveAxis({.node = 2})};
@@ -85,8 +85,8 @@ TEST_CASE("a timer's samples are periodic and correct for any phases, rates and 
         const auto [sample, report] = arm.assemble(instant, now);
         REQUIRE(report.position == Reason::ok);
         REQUIRE(sample.time_ns == instant);
-        // Between points 1 ms apart a chord of 3 rad/s, 9 rad/s² misses by a few µrad; the force by a
-        // step too.
+        // Interpolation over 1 ms at 3 rad/s and 9 rad/s² has an error of a few µrad; for the force add a
+        // step.
         REQUIRE(difference(sample.position[0], angle(seconds(instant))) < 3e-6);
         REQUIRE(difference(sample.position[1], angle(seconds(instant))) < 3e-6);
         if (sample.output_valid) {
@@ -137,15 +137,15 @@ TEST_CASE("an arm whose joints measure their currents has one output per joint")
     const auto [sample, report] = arm.assemble(2 * ms, 3 * ms);
     CHECK(report.position == Reason::ok);
     REQUIRE(sample.output_valid);
-    CHECK(sample.position[0] == Approx(-0.68).margin(1e-4)); // nine tenths of the way
+    CHECK(sample.position[0] == Approx(-0.68).margin(1e-4)); // 90 % of the interval
     CHECK(sample.position[1] == Approx(0.7).margin(1e-4));
     CHECK(sample.output[0] == Approx(-4.8).margin(1e-9));
     CHECK(sample.output[1] == Approx(4).margin(1e-9));
-    // The current of either joint is beyond its range: predicted only.
+    // Both currents are beyond their range, so that the output is not valid.
     send(0, 0.9, 5.5, 3 * ms);
     send(1, -0.9, -5, 3 * ms + 100 * us);
     CHECK(arm.assemble(3 * ms, 4 * ms).report.output == Reason::output_out_of_range);
-    for (int cycle = 4; cycle < 6; ++cycle) { // both neighbours of the next instant
+    for (int cycle = 4; cycle < 6; ++cycle) { // both neighbours of the next sample time
         const double position_rad = 0.2 * cycle + 0.3;
         send(0, position_rad, 4, cycle * ms);
         send(1, -position_rad, cycle == 4 ? -5 : -11, cycle * ms + 100 * us);

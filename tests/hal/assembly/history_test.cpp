@@ -18,7 +18,7 @@ TEST_CASE("a history returns the neighbours of any time that it covers") {
     History history;
     CHECK(history.around(0).before == nullptr);
     CHECK(history.around(0).after == nullptr);
-    for (int count = 1; count <= 11; ++count) { // around its end more than once
+    for (int count = 1; count <= 11; ++count) { // wraps more than once
         REQUIRE(push(history, 10 * count));
         const int oldest = std::max(1, count - 3);
         for (int instant = 0; instant <= 10 * count + 5; ++instant) {

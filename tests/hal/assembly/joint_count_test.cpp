@@ -64,7 +64,7 @@ TEST_CASE("a run-time number of joints gives the same samples as a fixed number"
             value[0].effort = 5 * std::sin(0.3 * cycle + joint);
             const FrameList answer = drives[static_cast<std::size_t>(joint)].encode(value);
             for (int f = 0; f < answer.count; ++f) {
-                if (chance(engine) < 0.99) { // one of a hundred frames is lost
+                if (chance(engine) < 0.99) { // loss of 1 %
                     take(answer.frame[static_cast<std::size_t>(f)], sync_ns + (joint + 1) * ms);
                 }
             }
@@ -82,7 +82,7 @@ TEST_CASE("a run-time number of joints gives the same samples as a fixed number"
         samples += other.valid() ? 1 : 0;
         outputs += static_cast<int>(other.valid_outputs().size());
     }
-    CHECK(samples > 100); // both kinds were compared
+    CHECK(samples > 100); // both variants were compared
     CHECK(samples < 1900);
     CHECK(outputs > 300);
     CHECK(sized.counters().positions_refused == fixed.counters().positions_refused);

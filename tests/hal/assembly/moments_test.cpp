@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When to assemble: at a SYNC, or when a set is complete.
+// Triggers: SYNCs and complete sets.
 #include "dfdyn/hal/device/cia402.hpp"
 #include "tests/hal/support/arm_on_bus.hpp"
 
@@ -62,7 +62,7 @@ TEST_CASE("at a SYNC, the values measured at the one before are complete and exa
             }
         }
     }
-    CHECK(arm.bus().unknown.count() == 0); // the SYNC is no stranger
+    CHECK(arm.bus().unknown.count() == 0); // the SYNC is a known identifier
     CHECK_FALSE(arm.colliding_id().has_value());
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("an output that arrives after its set was dropped does not complete th
     moments.measured(0);
     CHECK(moments.drop_set(21));
     moments.measured(0);
-    CHECK(moments.completed(20).kind == SampleTrigger::Kind::none); // half of it was lost
+    CHECK(moments.completed(20).kind == SampleTrigger::Kind::none); // half of the output was lost
     CHECK(moments.completed(30).instant_ns == 30);
 }
 
@@ -103,7 +103,7 @@ TEST_CASE("a drive that does not answer a SYNC has no new value") {
         }
         for (std::size_t i = 0; i < 2; ++i) {
             if (i == 1 && cycle >= 4) {
-                continue; // joint 2 has died
+                continue; // joint 2 fails
             }
             std::array<JointValue, 1> value{};
             value[0].position_rad = 0.1 * (cycle + 1);

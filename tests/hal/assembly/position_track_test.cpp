@@ -11,10 +11,10 @@ constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t latency = ms / 4;
 constexpr double speed = 0.5; // rad/s
 
-/// Position of a joint in steady motion.
+/// Returns the position of a joint at constant velocity.
 double at(std::int64_t time_ns) { return 0.3 + speed * 1e-9 * static_cast<double>(time_ns); }
 
-/// A track of 2 ms, and the joint whose positions it gets.
+/// A track with a period of 2 ms, and its joint.
 struct Joint {
     PositionTrack<16> track{{.max_age_ns = 6 * ms,
                              .latency_ns = latency,
@@ -24,7 +24,7 @@ struct Joint {
                             {-3, 3},
                             {}};
 
-    /// The position measured at `time_ns`, off by `off_rad`, in a frame that comes `latency` later.
+    /// Passes the position of `time_ns` with an error of `off_rad`, in a frame that comes `latency` later.
     Reason push(std::int64_t time_ns, double off_rad = 0, Reason reason = Reason::ok) {
         JointValue value;
         value.joint = 0;
@@ -40,7 +40,7 @@ struct Joint {
     }
 };
 
-/// Believed, with its last reading at 40 ms.
+/// Returns a trusted joint with its last reading at 40 ms.
 Joint moving() {
     Joint joint;
     for (std::int64_t time_ns = 0; time_ns <= 40 * ms; time_ns += 2 * ms) {

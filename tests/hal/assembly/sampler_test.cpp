@@ -16,16 +16,15 @@ using namespace dfdyn::hal;
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t start = 100 * ms;
 
-/// An arm whose values for instants before `known_ns`, and from `known_again_ns` on, are there, and whose
-/// other values are missing for up to `patience_ns`. A frame of identifier 0x80 is a moment, of the frame
-/// before.
+/// An arm with values for times before `known_ns` and from `known_again_ns` on. Its other values are missing
+/// for at most `patience_ns`. A frame with identifier 0x80 is a trigger, with the time of the frame before.
 struct ScriptedArm {
     std::int64_t known_ns = std::numeric_limits<std::int64_t>::max();
     std::int64_t known_again_ns = std::numeric_limits<std::int64_t>::max();
     std::int64_t patience_ns = 0;
     std::int64_t moment_ns = 0;
     int updates = 0;
-    std::vector<std::int64_t> taken_ns; ///< the times at which frames were read
+    std::vector<std::int64_t> taken_ns; ///< times at which frames were taken
 
     std::optional<std::int64_t> take(const Frame& frame, std::int64_t now_ns) {
         taken_ns.push_back(now_ns);
@@ -43,7 +42,7 @@ struct ScriptedArm {
     std::int64_t assemble(std::int64_t instant_ns, std::int64_t /*now_ns*/) { return instant_ns; }
 };
 
-/// A sampler, its arm, and the instants and times of its samples.
+/// A sampler, its arm, and the sample times and assembly times.
 template <std::size_t capacity = 16>
 struct Bench {
     explicit Bench(const SamplerConfig& config) : sampler(config) {}
@@ -99,8 +98,8 @@ TEST_CASE("a trigger from before a silence makes no sample after those of the si
     Bench bench(moments);
     bench.frame(start, 0x80);
     bench.frame(start + 2 * ms, 0x80);
-    bench.frames(start + 400 * ms, start + 402 * ms, ms); // which are no moments
-    bench.frame(start + 403 * ms, 0x80);                  // completes the instant of 2 ms
+    bench.frames(start + 400 * ms, start + 402 * ms, ms); // no triggers
+    bench.frame(start + 403 * ms, 0x80);                  // completes the sample of 2 ms
     CHECK(std::is_sorted(bench.instants.begin(), bench.instants.end()));
     CHECK(bench.sampler.late_moments() == 1);
     bench.frame(start + 405 * ms, 0x80);
@@ -141,7 +140,7 @@ TEST_CASE("a sample waits for a missing value, and later samples wait in order")
     bench.frame(start + 9 * ms + ms / 2);
     CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms});
     CHECK(bench.times.back() == start + 9 * ms + ms / 2);
-    bench.sampler.finish(bench.arm, bench.recorder()); // which waits no longer
+    bench.sampler.finish(bench.arm, bench.recorder()); // which does not wait
     CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms, start + 5 * ms});
 }
 
@@ -152,14 +151,14 @@ TEST_CASE("a sample stops waiting when its value can no longer come") {
     bench.frames(start, start + 7 * ms, ms);
     CHECK(bench.instants == std::vector{start - ms, start + ms});
     bench.frames(start + 8 * ms, start + 9 * ms, ms);
-    CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms}); // 5 ms later it is given up
+    CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms}); // 5 ms later the wait ends
 }
 
 TEST_CASE("a complete sample does not overtake a waiting one") {
     Bench bench(timer);
     bench.arm.patience_ns = 20 * ms;
     bench.arm.known_ns = start + 2 * ms;
-    bench.arm.known_again_ns = start + 4 * ms; // of 3 ms it is missing
+    bench.arm.known_again_ns = start + 4 * ms; // missing from 3 ms on
     bench.frames(start, start + 9 * ms, ms);
     CHECK(bench.instants == std::vector{start - ms, start + ms});
     bench.arm.known_ns = start + 4 * ms;
@@ -204,7 +203,7 @@ TEST_CASE("a frame with a stamp ahead is taken if the next three stamps continue
     Bench bench(timer);
     bench.frames(start, start + 4 * ms, ms);
     bench.frames(start + 700 * ms, start + 702 * ms, ms);
-    CHECK(bench.arm.taken_ns.size() == 5); // they wait
+    CHECK(bench.arm.taken_ns.size() == 5); // held
     bench.frame(start + 703 * ms);
     CHECK(bench.sampler.strays() == 0);
     CHECK(bench.arm.taken_ns.size() == 9);
@@ -221,7 +220,7 @@ TEST_CASE("frames in bursts are taken at once, and rare frames with the next one
                 for (int k = 0; k < burst; ++k) {
                     bench.frame(start + i * apart_ns + k * ms / 4);
                 }
-                CHECK(bench.arm.taken_ns.size() >= static_cast<std::size_t>(i * burst)); // all those before
+                CHECK(bench.arm.taken_ns.size() >= static_cast<std::size_t>(i * burst)); // all earlier ones
             }
             bench.sampler.finish(bench.arm, bench.recorder());
             CHECK(bench.sampler.strays() == 0);
@@ -238,7 +237,7 @@ TEST_CASE("if time returns to between held frames, only those ahead of it are dr
     bench.frame(start + 30 * ms); // ahead of the next
     bench.frame(start + 21 * ms);
     CHECK(bench.sampler.strays() == 1);
-    CHECK(bench.arm.taken_ns.back() == start + 25 * ms); // overtaken by the one of that time
+    CHECK(bench.arm.taken_ns.back() == start + 25 * ms); // overtaken by the frame of that time
 }
 
 TEST_CASE("a bus that reports the time between frames gives the samples of its recording") {
@@ -252,7 +251,7 @@ TEST_CASE("a bus that reports the time between frames gives the samples of its r
         Bench replayed(timer);
         std::int64_t time_ns = start;
         std::int64_t ahead_ns = 0;
-        std::int64_t left = 0; ///< strays in a row
+        std::int64_t left = 0; ///< wrong stamps in a row
         for (int i = 0; i < 200; ++i) {
             const std::int64_t step_ns = draw(0, 9) == 0 ? draw(6, 300) * ms : draw(50, 1000) * 1000;
             if (--left <= 0) {
@@ -286,7 +285,7 @@ TEST_CASE("a long silence makes samples for one second only") {
     CHECK(count >= 500);
     CHECK(count <= 504);
     bench.frame(start + 5005 * ms);
-    CHECK(bench.times.back() > start + 5000 * ms); // from there on at the period again
+    CHECK(bench.times.back() > start + 5000 * ms); // periodic again from there on
     CHECK(bench.instants.size() - count == 1);
 }
 
@@ -298,7 +297,7 @@ TEST_CASE("stamps at both ends of the integer range keep the samples periodic") 
     bench.frame(last);
     const auto count = bench.times.size();
     bench.frames(last + ms, last + 10 * ms, ms);
-    CHECK(count <= 502); // those of a second
+    CHECK(count <= 502); // samples of one second
     CHECK(bench.times.size() - count == 5);
     CHECK(std::is_sorted(bench.times.begin(), bench.times.end()));
 }

@@ -12,7 +12,7 @@ using Joint = Track<1, 4>;
 /// Values are held for 15 ns; frames come 2 ns after the measurement; three readings qualify.
 Joint make_joint() { return {{15, 2, {3, 10}}, {{{-1, 1}}}, position_reasons}; }
 
-/// Qualified, with 0.1 at 10, 0.2 at 20, 0.3 at 30 and 0.4 at 40.
+/// Returns a qualified track with 0.1 at 10, 0.2 at 20, 0.3 at 30 and 0.4 at 40.
 Joint ready_joint() {
     Joint joint = make_joint();
     for (int i = -2; i <= 4; ++i) {
@@ -73,7 +73,7 @@ TEST_CASE("a joint must qualify at the start and after a silence or a fault") {
     joint.push(32, Reason::ok, {0}, false);
     CHECK(joint.at(30, 30).reason == Reason::ok);
     CHECK(joint.at(25, 25).reason == Reason::qualifying);
-    joint.push(52, Reason::ok, {0}, false); // a silence of 20
+    joint.push(52, Reason::ok, {0}, false); // a silence of 20 ns
     CHECK(joint.at(50, 50).reason == Reason::qualifying);
     joint.push(62, Reason::ok, {0}, false);
     joint.push(72, Reason::ok, {0}, false);
@@ -100,7 +100,7 @@ TEST_CASE("two different readings with one stamp are both rejected") {
 
 namespace {
 
-/// A value each 10 ns, up to 2 ns late.
+/// A value every 10 ns, at most 2 ns late.
 Joint periodic_joint() {
     Joint joint({25, 0, {1, 1}, 10, 2}, {{{-1, 1}}}, position_reasons);
     joint.push(10, Reason::ok, {0.1}, false);

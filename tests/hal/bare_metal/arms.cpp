@@ -8,7 +8,7 @@
 #include "dfdyn/hal/sample_assembly.hpp"
 #include "every_family.hpp"
 
-/// Stands for the driver of a CAN controller, which the application provides.
+/// Placeholder for the driver of a CAN controller, which the application provides.
 struct BareController {
     std::span<const dfdyn::hal::Frame> drain(std::span<dfdyn::hal::Frame> into) noexcept {
         return into.first(0);

@@ -256,7 +256,7 @@ TEST_CASE("a recording continues after its clock was set back and the new clock 
         CHECK(gated.gate.adopted() == 1);
         CHECK(gated.gate.refused() == 20);
         CHECK(gated.good == 10'000 - 19);
-        CHECK(gated.took_ns == (10'000 - 2) * ms); // all but the step itself, which nobody measured
+        CHECK(gated.took_ns == (10'000 - 2) * ms); // all but the step itself, whose length is unknown
     }
 }
 

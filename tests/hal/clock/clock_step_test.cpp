@@ -9,7 +9,7 @@ using Watch = dfdyn::hal::ClockStepWatch<3>;
 constexpr std::int64_t us = 1000;
 constexpr std::int64_t period = 2000 * us;
 
-/// Three sources, 100 µs apart; `set_ns` is added from tick 10 on, for those of `set`.
+/// Three sources, 100 µs apart. From tick 10 on, the clock of the sources in `set` is off by `set_ns`.
 Watch after_step(std::int64_t set_ns, std::array<bool, 3> set, std::array<int, 3> lost = {}) {
     Watch watch;
     for (int tick = 0; tick < 20; ++tick) {

@@ -17,7 +17,7 @@ ClockGate make_gate() {
     return ClockGate({.tolerance_ns = 2 * ms, .max_step_ns = 50 * ms, .adopt_after = adopt_after});
 }
 
-/// Ten frames of a steady bus, 1 ms apart, from 100 s on; the time is then 100.010 s.
+/// Returns a gate after ten frames of a steady bus, 1 ms apart from 100 s on; the time is then 100.010 s.
 ClockGate running_gate() {
     ClockGate gate = make_gate();
     for (int i = 0; i <= 10; ++i) {
@@ -78,7 +78,7 @@ TEST_CASE("inconsistent stamps are never adopted") {
         const std::int64_t wild = i % 2 == 0 ? 1 * second : 2 * second;
         CHECK_FALSE(gate.accept(wild, 100 * second + 11 * ms).has_value());
     }
-    for (std::int64_t i = 0; i < 1000; ++i) { // forward, in strides that are too long
+    for (std::int64_t i = 0; i < 1000; ++i) { // forward, in steps that are too long
         CHECK_FALSE(gate.accept(i * 51 * ms, 100 * second + 11 * ms).has_value());
     }
     CHECK(gate.adopted() == 0);

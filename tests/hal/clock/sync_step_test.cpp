@@ -9,7 +9,7 @@ using namespace dfdyn::hal;
 constexpr std::int64_t us = 1000;
 constexpr std::int64_t period = 2000 * us;
 
-/// A device that answers every SYNC after 400 µs, for `cycles` of them.
+/// Returns the state of a device that answers `cycles` SYNCs after 400 µs.
 SyncStep running(int cycles) {
     SyncStep step;
     for (int cycle = 0; cycle < cycles; ++cycle) {
@@ -57,7 +57,7 @@ TEST_CASE("an answer after the next SYNC is not assigned to that SYNC") {
     step.sync(50 * period);
     step.sync(51 * period);
     CHECK_FALSE(step.answer(51 * period + 100 * us)); // to SYNC 50
-    CHECK_FALSE(step.answer(51 * period + 800 * us)); // to SYNC 51, but who can tell
+    CHECK_FALSE(step.answer(51 * period + 800 * us)); // to SYNC 51, but ambiguous
     CHECK_FALSE(step.late());
     step.sync(52 * period);
     CHECK(step.answer(52 * period + 400 * us));
@@ -100,15 +100,15 @@ TEST_CASE("an answer just before the next SYNC is in step, if that is the usual 
         CHECK(step.answer(cycle * period + 1150 * us)); // a frame fills more than half of the period
     }
     step.sync(50 * period);
-    CHECK(step.answer(50 * period + 1800 * us)); // it has waited for another frame
+    CHECK(step.answer(50 * period + 1800 * us)); // it waited for another frame
     step.sync(51 * period);
-    CHECK_FALSE(step.answer(51 * period + 2750 * us)); // SYNC 52 was lost and came early
+    CHECK_FALSE(step.answer(51 * period + 2750 * us)); // SYNC 52 was lost, and came early
 }
 
 TEST_CASE("after a lost SYNC, its answer is not assigned to the SYNC before") {
     SyncStep step = running(50);
     CHECK_FALSE(step.answer(50 * period + 400 * us)); // the second since SYNC 49
-    CHECK(step.late());                               // which leaves the first one as it is
+    CHECK(step.late());                               // does not affect the first one
     step.sync(51 * period);
     CHECK(step.answer(51 * period + 400 * us));
 }
@@ -116,7 +116,7 @@ TEST_CASE("after a lost SYNC, its answer is not assigned to the SYNC before") {
 TEST_CASE("two answers with a lost SYNC between them do not prove that a device caught up") {
     SyncStep step = running(50);
     step.sync(50 * period);
-    for (int cycle = 51; cycle < 200; ++cycle) { // from here on each answer is that to the SYNC before
+    for (int cycle = 51; cycle < 200; ++cycle) { // each answer is now for the SYNC before
         if (cycle % 10 != 5) {
             step.sync(cycle * period);
         }
@@ -127,7 +127,7 @@ TEST_CASE("two answers with a lost SYNC between them do not prove that a device 
 TEST_CASE("an answer and a copy of the one before do not prove that a device caught up") {
     SyncStep step = running(50);
     step.sync(50 * period);
-    for (int cycle = 51; cycle < 200; ++cycle) { // from here on each answer is that to the SYNC before
+    for (int cycle = 51; cycle < 200; ++cycle) { // each answer is now for the SYNC before
         step.sync(cycle * period);
         if (cycle % 5 == 0) {
             CHECK_FALSE(step.answer(cycle * period + 550 * us, true));

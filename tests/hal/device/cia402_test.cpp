@@ -50,7 +50,7 @@ TEST_CASE("values of a synchronous drive were measured at the preceding SYNC") {
     const auto answer = [&](std::int64_t stamp_ns) {
         Frame frame = minus_two;
         frame.stamp_ns = stamp_ns;
-        frame.data[0] = static_cast<std::uint8_t>(stamp_ns / ms); // a copy of the last would say nothing
+        frame.data[0] = static_cast<std::uint8_t>(stamp_ns / ms); // a copy would be no evidence
         return drive.decode(frame).joint[0];
     };
     CHECK(drive.decode(frame_of(0x080, {}, 5 * ms)).kind == Kind::sync);

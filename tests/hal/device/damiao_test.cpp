@@ -30,7 +30,7 @@ DamiaoMotor::Config elbow_config() {
 }
 DamiaoMotor elbow() { return DamiaoMotor(elbow_config()); }
 
-/// Code of a value, computed as in the manufacturers' examples: rounded down.
+/// Returns the code of a value, computed as in the manufacturers' examples: rounded down.
 unsigned code(double value, double maximum, int bits) {
     return static_cast<unsigned>((value + maximum) * ((1 << bits) - 1) / (2 * maximum));
 }

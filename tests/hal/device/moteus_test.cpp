@@ -27,7 +27,7 @@ Bytes bytes_of(const std::string& hex) {
     return bytes;
 }
 
-/// A CAN FD frame, padded with 0x50 to a length that there is.
+/// Returns a CAN FD frame, padded with 0x50 to a valid length.
 Frame flexible(std::uint32_t id, Bytes bytes) {
     while (!is_frame_length(static_cast<std::uint32_t>(bytes.size()), true)) {
         bytes.push_back(0x50);
@@ -132,7 +132,7 @@ TEST_CASE("a moteus value of NaN or the most negative integer is invalid") {
                     .has_velocity);
 }
 
-/// The third reply of its layout, which counts in any case.
+/// Returns the values of the third reply of its layout, which is always accepted.
 Decoded third_reply(MoteusController& device, const Frame& frame) {
     device.decode(frame);
     device.decode(frame);
@@ -255,7 +255,7 @@ TEST_CASE("a flipped bit in a moteus sub-frame's header gives no value of a wron
 TEST_CASE("a changed layout of moteus replies is accepted from the third reply on") {
     MoteusController device = controller();
     const Frame before = reply("2d01000080be2d030000003f"); // position and torque as float
-    const Frame after = reply("2c0300000000003f");          // not this one's layout
+    const Frame after = reply("2c0300000000003f");          // a new layout
     REQUIRE(device.decode(before).kind == Kind::values);
     const Frame other = reply("250110002503e803"); // as int16
     CHECK(device.decode(other).kind == Kind::rejected);

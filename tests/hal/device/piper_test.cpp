@@ -29,7 +29,7 @@ Frame angles(std::uint32_t id = 0x2A6) {
 /// Speed -100, current -1500, position 7 of joint 3.
 Frame fast(std::uint32_t id = 0x253) { return frame_of(id, {0xFF, 0x9C, 0xFA, 0x24, 0, 0, 0, 7}); }
 
-/// 24.0 V, 30 °C, 35 °C, status, no current on the supply, which is always so for the small motors.
+/// 24.0 V, 30 °C, 35 °C, status, no supply current, as for all small motors.
 Frame slow(std::uint8_t status, std::uint32_t id = 0x263) {
     return frame_of(id, {0x00, 0xF0, 0x00, 30, 35, status, 0, 0});
 }

@@ -20,7 +20,7 @@ auto shifted_by(std::int64_t jump_ns) {
     };
 }
 
-/// The arm as a sampler takes it, at a timer's moments.
+/// The arm in the form that a sampler takes, with a timer.
 struct SampledArm {
     ArmOnBus::Assembly& assembly;
 
@@ -136,7 +136,7 @@ TEST_CASE("fault 22: no second sample is assembled for the same time") {
 
 TEST_CASE("faults 22, 25 and 23: samples continue after a bus-off with clock steps back and forward") {
     DFDYN_SEEDED_ENGINE(engine);
-    for (std::size_t before = 17; before <= 20; ++before) { // frames by the clock that was set back
+    for (std::size_t before = 17; before <= 20; ++before) { // frames by the new clock
         StampedBench bench(engine);
         for (int tick = 0; tick < 100; ++tick) {
             bench.send(0);

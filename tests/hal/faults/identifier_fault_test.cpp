@@ -100,7 +100,7 @@ TEST_CASE("fault 18: a second sensor on the same identifiers is detected and nei
             CHECK(mixed.output() == Reason::id_collision);
         }
         CHECK(arm.assembly.output().pairing().doubles() >= 100);
-        CHECK(arm.ticks_to_recover() <= 5); // the last collision, and three wrenches that agree
+        CHECK(arm.ticks_to_recover() <= 5); // the last collision, and three consistent wrenches
     }
 }
 

@@ -33,7 +33,7 @@ TEST_CASE("an error-passive bus is degraded but valid") {
 TEST_CASE("lost frames are reported once, and counted from the start") {
     BusHealth health;
     BusCounters counters;
-    counters.dropped = 1000; // before us
+    counters.dropped = 1000; // before the first update
     health.update(BusState::active, counters);
     CHECK_FALSE(health.take_loss());
     counters.dropped = 1003;

@@ -62,7 +62,7 @@ TEST_CASE("a device that holds its values in motion only is rejected temporarily
         late += frozen && tick >= 400 ? 1 : 0;
     }
     CHECK(late == 0);
-    for (int tick = 0; tick < 90; ++tick) { // and a frozen one is still found early
+    for (int tick = 0; tick < 90; ++tick) { // a frozen one is still detected early
         late += gate.frozen(9, position(2000 + tick)) ? 1 : 0;
     }
     CHECK(late > 50);
@@ -82,7 +82,7 @@ TEST_CASE("lost values do not delay the detection of a frozen effort") {
         return tick;
     };
     CHECK(found_at(3) < 2100);
-    CHECK(found_at(2) <= found_at(3) + 2); // the next one that comes
+    CHECK(found_at(2) <= found_at(3) + 2); // at the next value that arrives
     CHECK(found_at(1) <= found_at(3) + 3);
 }
 

@@ -42,7 +42,7 @@ TEST_CASE("a sensor that freezes again at its frozen values after three flipped 
     }
     CHECK(gate.frozen(stuck));
     CHECK(gate.count() == 1);
-    for (int reading = 1; reading <= 11; ++reading) { // it is good for a while
+    for (int reading = 1; reading <= 11; ++reading) { // good for some readings
         CHECK_FALSE(gate.frozen({reading, reading, 5}));
     }
     CHECK_FALSE(gate.frozen(stuck));

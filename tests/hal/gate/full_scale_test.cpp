@@ -37,7 +37,7 @@ TEST_CASE("an implausible full scale is rejected, also before all are known") {
         Gate gate = complete_gate();
         gate.report(1, wrong);
         CHECK(gate.reason() == Reason::full_scale_implausible);
-        gate.report(1, 1500); // asked again
+        gate.report(1, 1500); // reported again
         CHECK(gate.reason() == Reason::full_scale_contradicted);
         gate.report(0, 1500);
         gate.report(2, 35);
@@ -52,7 +52,7 @@ TEST_CASE("after a changed full scale, none is valid until all channels are repo
     CHECK(gate.reason() == Reason::full_scale_contradicted);
     gate.report(1, 1500);
     CHECK(gate.reason() == Reason::full_scale_contradicted);
-    gate.report(0, 1500); // the other again: from the start
+    gate.report(0, 1500); // the other one again: all are required again
     gate.report(2, 35);
     CHECK(gate.reason() == Reason::full_scale_contradicted);
     gate.report(1, 1500);

@@ -47,7 +47,7 @@ TEST_CASE("a jump to identical outputs is rejected") {
     for (int tick = 500; tick < 520; ++tick) {
         CHECK(gate.jumps({force(500) + 12}, 2 * ms * tick));
     }
-    for (int tick = 520; tick < 526; ++tick) { // the sensor is not frozen any more
+    for (int tick = 520; tick < 526; ++tick) { // the sensor is no longer frozen
         CHECK(gate.jumps({force(tick) + 12}, 2 * ms * tick) == (tick < 522));
     }
 }

@@ -20,7 +20,8 @@ constexpr std::int64_t us = 1000;
 constexpr std::int64_t window_ns = 400 * us;
 constexpr PairGate::Config quiet_bus{.period_ns = 1000 * us, .delay_ns = window_ns};
 
-/// Half `part` of wrench `number` of a sensor with a period of 1 ms; the second half comes 130 µs later.
+/// Returns half `part` of wrench `number` of a sensor with a period of 1 ms; the second half comes 130 µs
+/// later.
 Frame half(int number, int part) {
     Frame frame = frame_of(part == 0 ? 0x3DA : 0x3DB, {static_cast<std::uint8_t>(number)});
     frame.stamp_ns = (1000 * number + 130 * part) * us;
@@ -56,7 +57,7 @@ TEST_CASE("a lost second half costs one wrench") {
 TEST_CASE("a lost first half costs one wrench") {
     PairGate gate(quiet_bus);
     CHECK(push(gate, 0, 1) == Result::waiting);
-    CHECK(push(gate, 1, 0) == Result::orphaned); // the second half that waited is too old
+    CHECK(push(gate, 1, 0) == Result::orphaned); // the waiting second half is too old
     CHECK(gate.orphan_ns() == half(0, 1).stamp_ns);
     CHECK(push(gate, 1, 1) == Result::paired);
     CHECK(gate.unpaired(1) == 1);
@@ -146,8 +147,7 @@ TEST_CASE("a reset discards a waiting half") {
 
 namespace {
 
-/// Wrenches of a sensor on a bus at 80 % load: each half waits its turn, up to 0.78 ms, the second behind the
-/// first.
+/// Wrenches of a sensor on a bus at 80 % load: each half waits up to 0.78 ms, the second behind the first.
 std::vector<Frame> wait_for_the_bus(std::mt19937_64& engine, int wrenches) {
     std::uniform_int_distribution<std::int64_t> queue(115 * us, 655 * us);
     std::vector<Frame> frames;
@@ -175,7 +175,7 @@ bool same_wrench(const PairGate& gate) {
 TEST_CASE("on a loaded bus, wrenches 0.33 to 1.6 periods apart are all paired") {
     DFDYN_SEEDED_ENGINE(engine);
     PairGate gate(loaded_bus);
-    constexpr int start = 50; // until a frame has waited for long
+    constexpr int start = 50; // until a frame has waited for a long time
     int late = 0;
     for (const Frame& frame : wait_for_the_bus(engine, 20'000)) {
         const Result result = gate.push(frame.id == 0x3DA ? 0 : 1, frame);
@@ -197,7 +197,7 @@ TEST_CASE("on a loaded bus with losses, halves of different wrenches are never p
         }
     }
     CHECK(mixed == 0);
-    CHECK(gate.pairs() > 8'000); // of 9'800 that lost no half
+    CHECK(gate.pairs() > 8'000); // of 9,800 without a lost half
     CHECK(gate.doubles() == 0);
 }
 

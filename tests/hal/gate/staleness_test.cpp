@@ -13,7 +13,7 @@ TEST_CASE("a value is valid up to its age limit, and then stale") {
     CHECK(gate.stale(100, 111));
     CHECK(gate.stale(100, 1000000));
     CHECK(gate.count() == 2);
-    CHECK_FALSE(gate.stale(115, 111)); // measured after the instant
+    CHECK_FALSE(gate.stale(115, 111)); // measured after the sample time
 }
 
 } // namespace staleness_test

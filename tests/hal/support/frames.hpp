@@ -9,7 +9,7 @@
 
 namespace dfdyn::tests {
 
-/// A classic data frame with these bytes.
+/// Returns a classic data frame with these bytes.
 inline hal::Frame frame_of(std::uint32_t id, std::initializer_list<std::uint8_t> bytes,
                            std::int64_t stamp_ns = 0) {
     hal::Frame frame = hal::make_frame(id, static_cast<int>(bytes.size()));
@@ -23,7 +23,7 @@ inline hal::Frame at_time(hal::Frame frame, std::int64_t stamp_ns) {
     return frame;
 }
 
-/// The frame with another length.
+/// Returns the frame with another length.
 inline hal::Frame with_length(hal::Frame frame, int length) {
     frame.length = static_cast<std::uint8_t>(length);
     return frame;

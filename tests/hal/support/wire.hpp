@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames as devices send them, written from their protocols' documents: nothing here uses the product's
-// encoders.
+// Frames as devices send them, written from the protocols' documents without the product's encoders.
 #pragma once
 
 #include "dfdyn/hal/frame.hpp"
@@ -18,7 +17,7 @@ namespace dfdyn::tests::wire {
 inline constexpr double turn = 2 * std::numbers::pi; // rad
 inline constexpr double degrees = 180 / std::numbers::pi;
 
-/// What a joint's device shows.
+/// Values of a joint's device.
 struct Joint {
     double position_rad = 0;
     double velocity = 0; ///< rad/s
