@@ -64,8 +64,8 @@ class BusArm {
     /// with them.
     void update(hal::BusState state, const hal::BusCounters& counters) { assembly_.update(state, counters); }
 
-    /// Drops a set that is not complete at `now_ns`. The next set consists of what is measured later. Returns
-    /// whether the dropped set contained a joint.
+    /// Drops a set that is not complete at `now_ns`. The next set contains later measurements only. Returns
+    /// true if the dropped set contained a joint.
     bool drop_set(std::int64_t now_ns) { return assembly_.drop_set(now_ns); }
 
     /// Returns true if a value for this sample time is missing that can still be interpolated.

@@ -10,8 +10,8 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// ISO 11898-1: the part with the bit rate of arbitration, then that of the data, whose check sum has stuff
-/// bits at fixed places.
+/// Bits of the arbitration phase and of the data phase (ISO 11898-1). The CRC of the data phase has fixed
+/// stuff bits.
 double flexible_frame_bits(const hal::Frame& frame, double data_rate_ratio) {
     const int arbitration = frame.extended ? 36 : 17;
     const int end = 13;

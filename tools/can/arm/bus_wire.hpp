@@ -42,7 +42,7 @@ class BusWire {
 
     double bit_rate_, data_rate_ratio_;
     OnFrame on_frame_;
-    std::vector<Waiting> waiting_; ///< in the order of the offers
+    std::vector<Waiting> waiting_; ///< in order of arrival
     std::int64_t free_ns_;         ///< time from which the wire is free
     double bits_ = 0;
 };

@@ -28,8 +28,8 @@ class TorqueFrames {
   private:
     struct Drive {
         AnyBoard board;
-        int half;          ///< the board's joint, 0 or 1
-        std::size_t joint; ///< the arm's
+        int half;          ///< joint of the board, 0 or 1
+        std::size_t joint; ///< joint of the arm
     };
 
     std::size_t joints_;

@@ -91,7 +91,7 @@ bool BusCheck::claimed(const hal::Frame& frame) const {
                             (description_->sensor && description_->sensor->concerns(frame)));
 }
 
-/// Returns true if the frame is on the identifier of values of a device, but is a request of the host or an
+/// Returns true if the frame has an identifier of a device's values, but is a request of the host or an
 /// answer without values.
 bool BusCheck::is_request(const hal::Frame& frame) const {
     return description_ && ((description_->sensor && (*description_->sensor)->is_request(frame)) ||
@@ -189,7 +189,7 @@ void BusCheck::watch_load(const BusStream* stream, double bits) {
 }
 
 void BusCheck::watch_order(const BusStream& stream, std::int64_t stamp_ns) {
-    constexpr std::int64_t once_ns = 10'000'000; // a clock that is set back is one time
+    constexpr std::int64_t once_ns = 10'000'000; // one step of the clock affects all sources within this time
     if (!stream.in_sequence()) {
         return;
     }
@@ -270,7 +270,7 @@ BusStream* BusCheck::stream_of(const hal::Frame& frame) {
         return nullptr;
     }
     BusStream& stream = streams_[key];
-    // Of another form than described, if the described source is silent.
+    // of another format than described, while the described source is silent
     stream.known = stream.known || (is_other_form ? other->second.count == 0 : claimed(frame));
     stream.other_form = is_other_form;
     stream.infers = !description_;

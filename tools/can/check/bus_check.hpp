@@ -62,17 +62,16 @@ class BusCheck {
     /// Returns true if frames dropped by this computer explain all missing frames.
     bool dropped_all_missing() const;
     double load() const; ///< share of the bit rate used by the frames, with worst-case bit stuffing
-    /// share of the bit rate that the described sources would use; 0 if the bit rate is unknown, as the
-    /// others
+    /// fraction of the bit rate that the described sources would use; 0 if the bit rate is unknown, like the
+    /// other two
     double expected_load() const;
-    /// The load of the busiest fifth of a second, and what undescribed identifiers had of the bit rate in
-    /// one.
+    /// Largest load in 0.2 s, and largest load of undescribed identifiers in 0.2 s.
     double peak_load() const { return peak_.load; }
     double peak_unknown_load() const { return peak_.unknown; }
-    /// How often frames were read after one with a later time stamp, although both came in their sequence.
+    /// Number of frames read after one with a later time stamp, although both came in their sequence.
     std::uint64_t overtaken() const noexcept { return overtaken_; }
-    /// The largest step of less than the sources' periods by which the clock was set: all regular sources
-    /// changed their phase by it at the same time. 0: none.
+    /// Largest clock step below the sources' periods: all regular sources changed their phase by it at the
+    /// same time. 0: none.
     std::int64_t small_clock_step_ns() const;
 
     /// Number of assembled samples, and how many of them had a reason for their positions or their output.
@@ -126,11 +125,11 @@ class BusCheck {
         double load = 0, unknown = 0;
     };
     Load peak_; ///< of all windows
-    /// Bits of the present half of a window, and of the half before.
+    /// Bits of the current half window, and of the one before.
     Load half_bits_, half_before_;
-    std::int64_t half_ = -1; ///< number of the present half
+    std::int64_t half_ = -1; ///< number of the current half window
     std::int64_t in_sequence_ns_ = std::numeric_limits<std::int64_t>::min();
-    std::int64_t overtaken_ns_ = 0; ///< stamp of the last one that counted
+    std::int64_t overtaken_ns_ = 0; ///< stamp of the last overtaken frame that was counted
     std::uint64_t overtaken_ = 0;
     std::optional<BusStreamKey> sync_key_;
     std::int64_t sync_ns_ = 0; ///< stamp of the last SYNC; 0: none
@@ -141,7 +140,7 @@ class BusCheck {
     hal::Reason last_position_ = hal::Reason::ok, last_output_ = hal::Reason::ok;
 };
 
-/// Returns true if frames are often read in another order than they were stamped in.
+/// Returns true if the reading order of frames often differs from the order of their stamps.
 inline bool is_overtaken(const BusCheck& check) {
     constexpr std::uint64_t least_times = 3;
     return check.overtaken() >= least_times;
@@ -153,10 +152,10 @@ std::vector<BusFinding> bus_findings(const BusCheck& check);
 /// Findings about single sources.
 std::vector<BusFinding> source_findings(const BusCheck& check);
 
-/// Returns true if a finding says that a source sends more frames than its sequence has.
+/// Returns true if a finding reports that a source sends more frames than its sequence has.
 bool sends_more(const BusCheck& check, const BusStreams::value_type& source);
 
-/// Returns true if a finding says that frames of a source are lost or come late.
+/// Returns true if a finding reports lost or late frames of a source.
 bool is_late_or_lost(const BusCheck& check, const BusStreams::value_type& source);
 
 /// Findings about the joints' values and about the condition reported by the sensor.

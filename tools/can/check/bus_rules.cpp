@@ -14,7 +14,7 @@ namespace {
 
 constexpr double largest_load = 0.8;
 constexpr double largest_unknown_load = 0.1;
-constexpr double largest_unknown_peak = 0.25; ///< of a fifth of a second
+constexpr double largest_unknown_peak = 0.25; ///< load in 0.2 s
 /// share of the samples or frames; for conditions that may occur occasionally
 constexpr double least_refused = 0.01;
 

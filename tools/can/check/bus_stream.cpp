@@ -14,8 +14,8 @@ constexpr std::size_t intervals_to_infer = 32;
 /// share of the period: intervals that differ by less are considered equal
 constexpr double same_period = 0.3;
 constexpr double phase_gain = 0.125;  ///< gain of the phase-locked loop
-constexpr double steady_share = 0.75; ///< share of the first intervals
-constexpr double recent_share = 0.02; ///< of a frame, among those that are recent
+constexpr double steady_share = 0.75; ///< fraction of the first intervals
+constexpr double recent_share = 0.02; ///< weight of a frame in the recent average
 constexpr double shorter_than_a_period = 0.9;
 constexpr double longer_than_a_period = 1.5;
 constexpr double most_off_sequence = 0.4; ///< share of the period: largest distance from the sequence
@@ -95,7 +95,7 @@ void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns, bo
     recent_additional_ = std::max(0.0, (1 - recent_share) * recent_additional_ - skipped);
     largest_recent_ = std::max(largest_recent_, recent_additional_);
     const double due_ns = next_ns_ + skipped * period_ns;
-    const bool late_by_a_period = skipped_ && skipped < 0; // the one before was not the next of the sequence
+    const bool late_by_a_period = skipped_ && skipped < 0; // the previous frame was out of sequence
     const bool off = late_by_a_period || std::abs(now_ns - due_ns) > most_off_sequence * period_ns;
     off_sequence_ += off && !is_overtaken ? 1 : 0;
     in_sequence_ = !off && skipped == 0;

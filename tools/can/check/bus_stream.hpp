@@ -40,7 +40,7 @@ class BusStream {
     double expected_bits = 0;    ///< bits per second
     bool several = false;        ///< more than one frame per period
     bool of_sensor = false;
-    bool other_form = false;   ///< of identifiers than the described source with the same number
+    bool other_form = false;   ///< its format, 11 or 29 bits, differs from that of the described source
     bool answers_sync = false; ///< its device measures at a SYNC
 
     /// Takes the next frame. `frame_bits`: its worst-case length on the wire. `is_overtaken`: a frame with a
@@ -59,20 +59,20 @@ class BusStream {
     double missing_share() const; ///< share of all sent frames
     /// Number of frames that came in addition to the sequence.
     std::uint64_t additional() const;
-    /// Largest number of them at about one time: among some fifty frames.
+    /// Largest number of them among about fifty frames.
     double additional_at_once() const noexcept { return largest_recent_; }
     /// Number of frames that came more than 40 % of a period off the sequence, without overtaken ones.
     std::uint64_t off_sequence() const noexcept { return off_sequence_; }
-    /// True if the last frame came in its place of the sequence.
+    /// True if the last frame came at its place in the sequence.
     bool in_sequence() const noexcept { return in_sequence_; }
     /// Lasting changes of the sequence's phase.
     const std::vector<PhaseStep>& phase_steps() const noexcept { return phase_.steps(); }
     /// Takes a frame with the same number in the other form of identifiers, 11 or 29 bits.
     void take_other_form() noexcept { ++other_forms_, ++waiting_forms_; }
-    /// Number of such frames, if most of them came where frames of the source were missing. Else they are
-    /// another device's, which may send what it likes.
+    /// Number of such frames, if most of them came where frames of the source were missing. Otherwise they
+    /// belong to another device.
     std::uint64_t other_forms() const noexcept;
-    /// Returns true if the description says how often its frames come.
+    /// Returns true if the description contains the rate of its frames.
     bool is_described() const noexcept { return known && expected_hz > 0; }
     SyncAnswers answers; ///< if its frames answer a SYNC
     /// Returns true if the sender keeps the expected period: at least half of the intervals are close to it,
@@ -90,13 +90,13 @@ class BusStream {
     std::vector<std::int64_t> first_intervals_;
     double next_ns_ = 0;       ///< expected time of the next frame in the sequence, relative to `last_ns`
     std::int64_t missing_ = 0; ///< minus the frames that arrived in addition to the sequence
-    bool skipped_ = false;     ///< the last frame skipped a place of the sequence
+    bool skipped_ = false;     ///< the last frame skipped a place in the sequence
     double recent_additional_ = 0, largest_recent_ = 0;
     bool in_sequence_ = false;
     std::uint64_t off_sequence_ = 0;
     PhaseSteps phase_;
     hal::Frame last_frame_{};
-    /// intervals that were followed, and those close to the period
+    /// intervals evaluated, and those close to the period
     std::uint64_t followed_ = 0, regular_ = 0;
     /// frames of the other form: all, those in place of missing frames, and those since the last frame
     std::uint64_t other_forms_ = 0, replacing_forms_ = 0, waiting_forms_ = 0;

@@ -9,11 +9,11 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr int replayed_positions = 10; ///< in a row
+constexpr int replayed_positions = 10; ///< consecutive
 constexpr double tolerance_counts = 3;
-constexpr double near_rad = 0.02;   ///< motion of a joint from one position to the next
-constexpr double same_share = 0.25; ///< of a jump and its return
-constexpr double flip_periods = 6;  ///< until a flipped position is back
+constexpr double near_rad = 0.02;   ///< motion between consecutive positions
+constexpr double same_share = 0.25; ///< tolerance, as a fraction of a jump
+constexpr double flip_periods = 6;  ///< until a flipped position has returned
 constexpr double swap_periods = 5;  ///< between the jumps of two joints
 
 bool within(const PositionJump& jump, const PositionJump& other, double periods) {
@@ -25,8 +25,8 @@ bool is_near(double one, double other, double count_rad) {
     return std::abs(one - other) <= near_rad + tolerance_counts * count_rad;
 }
 
-/// Number of jumps after the first one until the position is back at once, by flipped bits that follow each
-/// other; 0: it is not. One turn and back is a joint at rest where its encoder wraps.
+/// Number of jumps until the position has returned at once, by consecutive flipped bits; 0: it has not. One
+/// turn and back is a joint at rest where its encoder wraps.
 std::size_t flips_after(std::span<const PositionJump> jumps) {
     constexpr std::size_t most_flips = 8;
     if (jumps[0].one_turn) {
@@ -50,7 +50,7 @@ bool returns(const PositionJump& jump, const PositionJump& back) {
 }
 
 bool is_power_of_two(const PositionJump& jump) {
-    constexpr double rounding = 0.08; // share of the jump; a joint accelerates meanwhile
+    constexpr double rounding = 0.08; // fraction of the jump, for the motion meanwhile
     const double counts = std::abs(jump.step_rad()) / jump.count_rad;
     const double power = std::log2(std::max(counts, 1.0));
     return std::abs(counts / std::exp2(std::round(power)) - 1) < rounding;
@@ -83,9 +83,9 @@ JumpCause cause_of(const PositionJump& jump, const PositionJump* back) {
     return back != nullptr && is_power_of_two(jump) ? JumpCause::bit_stuck : JumpCause::unknown;
 }
 
-/// Jumps of a bit that is stuck have one size; flipped bits make jumps of several sizes.
+/// A stuck bit causes jumps of one size; flipped bits cause several sizes.
 void separate_stuck_from_flipped(const std::vector<PositionJump>& jumps, std::vector<JumpCause>& causes) {
-    constexpr double same_size = 1.6; // ratio of the largest to the least; a joint moves meanwhile
+    constexpr double same_size = 1.6; // ratio of largest to smallest, for the motion meanwhile
     const auto of_bits = [](JumpCause cause) {
         return cause == JumpCause::bits_flipped || cause == JumpCause::bit_stuck ||
                cause == JumpCause::unknown;
@@ -113,7 +113,7 @@ void separate_stuck_from_flipped(const std::vector<PositionJump>& jumps, std::ve
     }
 }
 
-/// Turns and back at once, beside other flipped bits, are flipped bits, too.
+/// Turns that reverse at once, together with other flipped bits, are flipped bits, too.
 void find_flipped_turns(const std::vector<PositionJump>& jumps, std::vector<JumpCause>& causes) {
     if (std::ranges::count(causes, JumpCause::bits_flipped) == 0) {
         return;
@@ -126,7 +126,7 @@ void find_flipped_turns(const std::vector<PositionJump>& jumps, std::vector<Jump
     }
 }
 
-/// The cause of a joint's jumps, in their order.
+/// Returns the causes of a joint's jumps, in their order.
 std::vector<JumpCause> causes_of_joint(const std::vector<PositionJump>& jumps,
                                        std::span<const std::vector<PositionJump>> joints) {
     std::vector<JumpCause> causes;

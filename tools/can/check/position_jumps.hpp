@@ -10,22 +10,22 @@
 
 namespace dfdyn::tools {
 
-/// A step between two positions of one joint that the joint cannot make.
+/// A step between two positions that no joint can make.
 struct PositionJump {
     std::int64_t time_ns = 0;
-    double from_rad = 0, to_rad = 0; ///< where the motion before it led, and where the position was
+    double from_rad = 0, to_rad = 0; ///< position extrapolated from the motion before, and measured position
     double count_rad = 0;            ///< smallest step of the encoder
-    double from_zero_rad = 0;        ///< of the position after it, from the device's own zero
+    double from_zero_rad = 0;        ///< position after the step, relative to the device's zero
     double period_s = 0;             ///< mean interval between positions before it
     bool turn = false;               ///< whole turns of the encoder
-    bool one_turn = false;           ///< one turn, as where a single-turn encoder wraps
-    bool after_silence = false;      ///< or after a fault or zeros, as of a device that restarts
-    bool replays = false;            ///< the positions after it are those of an earlier time
+    bool one_turn = false;           ///< one turn, like the wrap of a single-turn encoder
+    bool after_silence = false;      ///< also after a fault or zeros, like a restart
+    bool replays = false;            ///< the positions after it repeat those of an earlier time
 
     double step_rad() const noexcept { return to_rad - from_rad; }
 };
 
-/// What made a joint's position jump.
+/// Cause of a jump.
 enum class JumpCause : std::uint8_t {
     bits_flipped,
     bit_stuck,
@@ -36,11 +36,11 @@ enum class JumpCause : std::uint8_t {
     unknown
 };
 
-/// Finds out whether the positions after a jump are those of an earlier time, one after the other.
+/// Detects if the positions after a jump repeat those of an earlier time.
 class ReplayedPositions {
   public:
-    /// Takes the next position; `jumps`: it is the first after a jump. Returns true once for each jump whose
-    /// positions are old ones.
+    /// Takes the next position; `jumps`: it is the first after a jump. Returns true once for each jump to
+    /// repeated positions.
     bool take(double position_rad, bool jumps);
 
   private:
@@ -56,7 +56,7 @@ class ReplayedPositions {
     int equal_ = 0;
 };
 
-/// The causes of the jumps of each joint of an arm, one each.
+/// Returns the cause of each jump, for each joint of an arm.
 std::vector<std::vector<JumpCause>> causes_of(std::span<const std::vector<PositionJump>> joints);
 
 } // namespace dfdyn::tools

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double least_step = 0.2;    ///< share of the period; more than usual jitter
 constexpr double same_step = 0.2;     ///< share of the period
-constexpr int lasting_frames = 8;     ///< in a row
-constexpr int frames_to_settle = 40;  ///< until a sequence has its new phase
-constexpr std::size_t most_steps = 8; ///< more are no clock that is set
+constexpr int lasting_frames = 8;     ///< consecutive
+constexpr int frames_to_settle = 40;  ///< until a sequence has adopted its new phase
+constexpr std::size_t most_steps = 8; ///< more are not a clock step
 constexpr int answers_to_learn = 20;
 constexpr double late_answer = 0.25; ///< share of the period
 constexpr std::uint64_t late_in_a_row = 5;

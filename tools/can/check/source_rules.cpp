@@ -22,8 +22,8 @@ constexpr double enough_frames = 20;
 constexpr double jitter_of_two = 0.25;
 constexpr double least_missing = 0.0005; ///< share of the frames; smaller losses are not reported
 constexpr std::uint64_t least_missing_frames = 3;
-constexpr std::uint64_t least_overtaken = 3; ///< frames; with fewer of them pauses are judged as usual
-constexpr double largest_load_in_time = 0.6; ///< beyond it frames wait for others
+constexpr std::uint64_t least_overtaken = 3; ///< with fewer frames, pauses are judged as usual
+constexpr double largest_load_in_time = 0.6; ///< above it, frames wait for others
 constexpr double least_at_once = 12;         ///< additional frames
 constexpr double least_copies = 0.5;         ///< share of the additional frames
 
@@ -33,18 +33,18 @@ struct Source {
     const BusCheck& check;
 
     double ratio() const { return stream.rate_hz() / stream.expected_hz; }
-    /// The ratio without frames that repeat the one before.
+    /// Returns the ratio without copies of the frame before.
     double ratio_without_copies() const {
         return ratio() * (1 - static_cast<double>(stream.copies) / static_cast<double>(stream.count));
     }
     double periods(double time_s) const { return time_s * stream.expected_hz; }
-    /// The ratio without the longest pause.
+    /// Returns the ratio without the longest pause.
     double ratio_without_gap() const {
         const auto all_ns = static_cast<double>(stream.last_ns - stream.first_ns);
         const double rest_ns = all_ns - static_cast<double>(stream.longest_gap_ns);
         return rest_ns > 0 ? ratio() * all_ns / rest_ns : ratio();
     }
-    /// A few frames with a wrong stamp are in no place of the sequence, and no silence.
+    /// Frames with a wrong stamp are out of sequence, but not a silence.
     double largest_gap_with_strays() const {
         return std::min(largest_gap + static_cast<double>(stream.strays), BusStream::gap_periods);
     }
@@ -59,12 +59,12 @@ struct Source {
         return stream.expected_hz > 0 && static_cast<double>(stream.count) > enough_frames && !stopped();
     }
     bool is_described() const { return runs() && !stream.infers; }
-    /// Returns true for a number of frames that is not an exception.
+    /// Returns true if the number of frames is not an exception.
     bool many(std::uint64_t frames) const {
         return frames >= least_missing_frames &&
                static_cast<double>(frames) >= least_missing * static_cast<double>(stream.count);
     }
-    /// Returns true if frames come in addition to a regular sequence.
+    /// Returns true if there are more frames than a regular sequence has.
     bool has_more() const { return is_described() && many(stream.additional()); }
     bool duplicated() const {
         return has_more() &&
@@ -87,8 +87,8 @@ struct Source {
                stream.is_regular() && !collides() && !duplicated() && !jitters() &&
                many(stream.off_sequence());
     }
-    /// Of several messages with one identifier twice as many are missing after one pause. Frames with a wrong
-    /// stamp are no loss.
+    /// With several messages on one identifier, one pause loses twice as many. Frames with a wrong stamp are
+    /// not lost.
     std::uint64_t enough_missing() const {
         return (stream.several ? 2 : 1) * least_missing_frames + stream.strays;
     }

@@ -47,11 +47,11 @@ std::int64_t StreamClock::time_of(std::int64_t stamp_ns) const noexcept {
     return frames_ == 0 ? time_ns : std::max(time_ns, latest_ns_);
 }
 
-/// Returns true if the frame waits, or came after a silence and was followed with those that waited.
+/// Returns true if the frame waits, or if it ended a silence and was delivered with the waiting frames.
 bool StreamClock::hold_ahead(const hal::Frame& frame, std::int64_t step_ns, std::int64_t usual_ns) {
     const bool goes_on =
         !ahead_.empty() && wrapping_difference(frame.stamp_ns, ahead_.back().stamp_ns) >= -overtaken_ns;
-    if (!goes_on) { // those that wait were not of a silence
+    if (!goes_on) { // the waiting frames do not belong to a silence
         for (const hal::Frame& stray : ahead_) {
             ready_.push_back({stray, true});
         }

@@ -12,12 +12,12 @@ namespace dfdyn::tools {
 /// Removes jumps from the time stamps of a bus. A clock that was set, or a single wrong time stamp, would
 /// otherwise look like silence, losses or slow sources.
 ///
-/// Frames far ahead of the latest wait: if one continues from the latest before `silent_after` of them are
-/// there, their stamps were outliers; else there was a silence. Frames wait, too, if their time stamps are
-/// more than `overtaken_ns` behind the latest, or farther ahead. If the following frames continue from the
-/// old time stamps, it was an outlier. If `adopt_after` frames continue from the new one, the clock was set,
-/// and time continues without the step. In a recording, a silence of the same length cannot be distinguished
-/// from that. Memory: `adopt_after` frames.
+/// Frames far ahead of the latest one wait. If one continues from the latest before `silent_after` of them
+/// have come, their stamps were outliers; otherwise there was a silence. Frames more than `overtaken_ns`
+/// behind the latest, or farther ahead, wait, too. If the following frames continue from the old time stamps,
+/// they were outliers. If `adopt_after` frames continue from the new one, the clock was set, and time
+/// continues without the step. In a recording, a silence of the same length looks the same. Memory:
+/// `adopt_after` frames.
 class StreamClock {
   public:
     static constexpr std::int64_t overtaken_ns = 5'000'000;
@@ -31,10 +31,10 @@ class StreamClock {
         bool stray = false; ///< its time stamp is meaningless
     };
 
-    /// Returns the frames whose time is known now, in the order of their arrival. Valid until the next call.
+    /// Returns the frames with a known time, in the order of their arrival. Valid until the next call.
     std::span<const Timed> take(const hal::Frame& frame);
 
-    /// Returns the frames that still wait. Call after the last frame.
+    /// Returns the waiting frames. Call after the last frame.
     std::span<const Timed> finish();
 
     /// Converts a time of the same clock as the time stamps to time without jumps.
@@ -53,7 +53,7 @@ class StreamClock {
     bool hold_ahead(const hal::Frame& frame, std::int64_t step_ns, std::int64_t usual_ns);
     void follow_ahead();
 
-    std::vector<hal::Frame> ahead_; ///< after a step ahead, until it is known to be a silence
+    std::vector<hal::Frame> ahead_; ///< frames after a step ahead, until a silence is confirmed
     std::vector<hal::Frame> waiting_;
     std::vector<Timed> ready_;
     std::int64_t offset_ns_ = 0;

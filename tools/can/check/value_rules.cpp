@@ -20,7 +20,7 @@ std::string share_text(std::uint64_t count, std::uint64_t of, const char* what) 
 struct Joint {
     const ValueWatch& watch;
     std::uint64_t restarts;
-    std::vector<JumpCause> causes; ///< of its jumps
+    std::vector<JumpCause> causes; ///< causes of its jumps
 };
 
 struct JointRule {
@@ -40,7 +40,7 @@ std::string of_efforts(const Joint& joint, std::uint64_t count) {
     return share_text(count, joint.watch.efforts(), "efforts");
 }
 
-/// Number of jumps, of which only the first are known.
+/// Number of jumps; only the first ones are stored.
 std::string jumps_text(const Joint& joint, std::uint64_t count) {
     return (joint.watch.has_more_jumps() ? "at least " : "") + std::to_string(count);
 }
@@ -134,7 +134,7 @@ constexpr std::array<JointRule, 12> joint_rules{{
      "a larger unit in the drive's PDO; a slower motion, a smaller load"},
 }};
 
-/// Returns false if a finding says that values of two senders may alternate.
+/// Returns false if a finding indicates values of two alternating senders.
 bool has_one_sender(const BusCheck& check, int joint) {
     const BusStreams::value_type* const stream = check.position_stream(static_cast<std::size_t>(joint));
     return stream == nullptr || !sends_more(check, *stream);

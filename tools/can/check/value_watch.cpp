@@ -27,7 +27,7 @@ void ValueWatch::take(const hal::JointValue& value) {
     if (value.position_reason == hal::Reason::ok) {
         take_position(value);
     } else if (value.position_reason != hal::Reason::waiting_for_position) {
-        after_fault_ = started_; // which the device reports itself
+        after_fault_ = started_; // reported by the device
         started_ = false;
     }
     if (value.effort_reason != hal::Reason::no_output) {
@@ -62,8 +62,8 @@ void ValueWatch::take_position(const hal::JointValue& value) {
     highest_rad_ = std::max(highest_rad_, position_rad_);
 }
 
-/// Counts zeros between other positions. Those from which the next positions go on are the first ones of an
-/// encoder that counts from there.
+/// Counts zeros between other positions. Zeros from which the next positions continue are the first ones of
+/// an encoder that counts from there.
 void ValueWatch::take_zero(const hal::JointValue& value, bool was_zero) {
     equal_ = 0;
     zeros_in_a_row_ = zero_ ? zeros_in_a_row_ + 1 : zeros_in_a_row_;
@@ -94,8 +94,7 @@ void ValueWatch::note_jump(const hal::JointValue& value, double from_rad, bool a
     }
 }
 
-/// Returns true if the positions after a silence begin at the device's zero, to which the joint's motion does
-/// not lead.
+/// Returns true if the positions after a silence begin at the device's zero, without a motion to there.
 bool ValueWatch::restarts(const hal::JointValue& value, std::int64_t step_ns, double step_rad) const {
     const double silence_s = seconds_of(step_ns);
     const double rounding_rad = few_counts * value.step_rad;
@@ -112,7 +111,7 @@ bool ValueWatch::is_silence(std::int64_t step_ns) const {
     return static_cast<double>(step_ns) > silence_periods * mean_interval_ns_;
 }
 
-/// A silence changes the mean interval by little.
+/// Limits the effect of a silence on the mean interval.
 void ValueWatch::follow_interval(std::int64_t step_ns) {
     const auto interval_ns = static_cast<double>(step_ns);
     const double most_ns = mean_interval_ns_ > 0 ? silence_periods * mean_interval_ns_ : interval_ns;
@@ -158,8 +157,8 @@ void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, d
     equal_ = 0;
 }
 
-/// Decides whether the positions before the last step were frozen. Where the next position is back there, a
-/// bit flipped while the joint was at rest.
+/// Decides if the positions before the last step were frozen. If the next position returns to them, a bit
+/// flipped while the joint was at rest.
 void ValueWatch::settle_thaw(const hal::JointValue& value) {
     const double back_rad = std::abs(value.position_rad - thawed_from_rad_);
     if (thawed_ > 0 && value.position_rad != position_before_rad_) {
@@ -205,7 +204,7 @@ bool ValueWatch::jumped(std::int64_t step_ns, double step_rad) const {
     return std::abs(step_rad) > limits_.velocity * step_s;
 }
 
-/// Frozen positions of the present run of equal positions.
+/// Returns the frozen positions in the current run of equal positions.
 std::uint64_t ValueWatch::pending_frozen() const noexcept {
     return is_long() && stop_rad_per_s2_ > limits_.stop ? equal_ : 0;
 }

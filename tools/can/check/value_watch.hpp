@@ -69,7 +69,7 @@ class ValueWatch {
     std::vector<PositionJump> first_jumps_; ///< at most `most_jumps`
     ReplayedPositions replayed_;
     double before_zero_rad_ = 0;      ///< last position before a zero of `zeros_`
-    bool silent_before_zero_ = false; ///< a silence or a fault came between
+    bool silent_before_zero_ = false; ///< a silence or a fault before the zero
     std::uint64_t zeros_in_a_row_ = 0;
 
     bool started_ = false;
@@ -83,7 +83,7 @@ class ValueWatch {
     double last_speed_rad_per_s_ = 0;
     double steps_per_change_ = 1;    ///< mean number of positions until the encoder shows a new one
     double smallest_step_rad_ = 1;   ///< smallest nonzero step
-    double stop_rad_per_s2_ = 0;     ///< deceleration when the present run of equal positions began
+    double stop_rad_per_s2_ = 0;     ///< deceleration at the start of the current run of equal positions
     std::uint64_t equal_ = 0;        ///< number of consecutive positions equal to the previous one
     std::int64_t equal_from_ns_ = 0; ///< start of that run
     std::uint64_t frozen_positions_ = 0;

@@ -36,11 +36,11 @@ class Board {
     virtual double encoder_turn_rad() const { return 2 * std::numbers::pi; }
     /// Status frame that the device sends by itself; none for most families.
     virtual std::optional<hal::Frame> heartbeat() const { return std::nullopt; }
-    /// Findings from all decoded frames that no single value shows.
+    /// Findings from all decoded frames together.
     virtual std::vector<BusFinding> findings() const { return {}; }
-    /// True for a frame on an identifier of its values that has none and does not come at their rate.
+    /// True for a frame with an identifier of its values, but without values and not at their rate.
     virtual bool is_aside(const hal::Frame& /*frame*/) const { return false; }
-    /// What other programs commanded its motor, as `12 control, 3 poll`; empty: nothing.
+    /// Commands of other programs to its motor, as `12 control, 3 poll`; empty: none.
     virtual std::string host_summary() const { return {}; }
 
     /// Encodes a torque command (N·m) for the board's joint number `joint` (0 or 1); none if the family has

@@ -35,7 +35,7 @@ struct BusSource {
     double rate_hz = 0;
     std::int64_t max_age_ns = 0;
     std::int64_t latency_ns = 0; ///< from the measurement to the end of its frame
-    std::int64_t jitter_ns = 0;  ///< largest difference of the lateness of two frames
+    std::int64_t jitter_ns = 0;  ///< largest difference between the delays of two frames
 };
 
 struct JointFamily; // families/family.hpp

@@ -31,10 +31,10 @@ struct DbcField {
     int length = 0; ///< bytes of the message
     hal::Signal signal;
     std::optional<hal::Range> limits; ///< limits in the DBC file; a value beyond them is not a measurement
-    /// all must hold for the value to be present; empty: it is in every frame
+    /// conditions that must all be true for the value to be present; empty: it is in every frame
     std::vector<DbcCondition> conditions;
 
-    /// Returns true if the frame has the identifier of this message, regardless of its form.
+    /// Returns true if the frame has the identifier of this message, in either format.
     [[nodiscard]] bool is_in(const hal::Frame& frame) const noexcept;
     /// Checks a frame of this message: it must be a data frame with the message's length, classic or CAN FD.
     [[nodiscard]] hal::Reason check(const hal::Frame& frame) const noexcept;

@@ -21,7 +21,7 @@ class CubemarsMitMotor final : public MotorBoard<CubemarsMitMotor, hal::Cubemars
     }
 };
 
-/// Accepts torque commands, as currents, where the torque of a current is described.
+/// Accepts torque commands, as currents, if the torque constant is configured.
 class CubemarsServo final : public MotorBoard<CubemarsServo, hal::CubemarsServo> {
   public:
     using MotorBoard::MotorBoard;
@@ -113,7 +113,7 @@ void read_cubemars_motors(const JsonReader& joints, const std::filesystem::path&
     }
 }
 
-/// Returns 0 if the frame is no feedback of such a motor, 1 if it can be one, more with evidence for it.
+/// Returns 0 if the frame cannot be a feedback of such a motor, 1 if it can be, more with evidence for it.
 double cubemars_plausibility(const hal::Frame& frame) {
     const bool short_frame = frame.length == 6;
     if (!short_frame && (frame.data[6] > 150 || frame.data[7] > 6)) {
@@ -130,7 +130,7 @@ Recognition recognise_mit_cubemars(FrameSpan frames) {
     return recognition;
 }
 
-/// Whether it may be the feedback of a motor in servo mode.
+/// Returns true if it may be the feedback of a motor in servo mode.
 bool is_cubemars_upload(const hal::Frame& frame) {
     const unsigned packet = frame.id >> 8U;
     return frame.extended && !frame.error && !frame.remote && !frame.fd && frame.length == 8 &&

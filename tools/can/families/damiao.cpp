@@ -21,8 +21,8 @@ class DamiaoMotor final : public MotorBoard<DamiaoMotor, hal::DamiaoMotor> {
     }
 };
 
-/// Factory settings. First LeRobot (06f4bd2, motors/damiao/tables.py), then openarm_can (98666042), where
-/// they disagree.
+/// Factory settings by LeRobot (06f4bd2, motors/damiao/tables.py), and by openarm_can (98666042) if they
+/// disagree.
 constexpr std::array<MotorType, 13> damiao_types{{{"DM3507", {12.5, 30, 10}, {12.5, 50, 5}},
                                                   {"DM4310", {12.5, 30, 10}},
                                                   {"DM4310_48V", {12.5, 50, 10}},
@@ -76,7 +76,7 @@ void read_damiao_motors(const JsonReader& joints, const std::filesystem::path& /
         joints, false, [&](const JsonReader& board) { return read_damiao_motor(board, fd); }, description);
 }
 
-/// Returns 0 if the frame is no feedback of such a motor, 1 if it can be one, more with evidence for it.
+/// Returns 0 if the frame cannot be a feedback of such a motor, 1 if it can be, more with evidence for it.
 double damiao_plausibility(const hal::Frame& frame) {
     const unsigned state = frame.data[0] >> 4U;
     if (state != 0 && state != 1 && (state < 8 || state > 14)) {
@@ -88,7 +88,7 @@ double damiao_plausibility(const hal::Frame& frame) {
            (state == 1 ? 0.5 : 0);
 }
 
-/// The maxima that the motor itself reported.
+/// Returns the maxima that the motor reported.
 Maxima reported_damiao_maxima(const MitCandidate& candidate, FrameSpan frames) {
     Maxima known{};
     for (const hal::Frame& frame : frames) {

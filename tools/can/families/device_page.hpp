@@ -5,7 +5,7 @@
 
 namespace dfdyn::tools {
 
-/// Returns the text of docs/reference/devices.md: what the families' descriptors say about their devices.
+/// Returns the text of docs/reference/devices.md from the families' descriptors.
 std::string device_page();
 
 } // namespace dfdyn::tools

@@ -20,8 +20,7 @@ struct FamilyField {
     std::string_view meaning;
 };
 
-/// A family of boards with joints. Everything that the program knows about it is here, except its codec in
-/// the HAL.
+/// A family of boards with joints: all its properties except its codec in the HAL.
 struct JointFamily {
     std::string_view name;                 ///< value of `joints.family`
     std::vector<FamilyField> board_fields; ///< fields of each entry of `boards`
@@ -35,18 +34,19 @@ struct JointFamily {
     /// checked.
     void (*read)(const JsonReader& joints, const std::filesystem::path& folder, BusDescription& description);
 
-    std::string_view devices = {};               ///< what its devices are, for docs/reference/devices.md
-    std::vector<std::string_view> sources = {};  ///< of its frames and numbers
-    std::vector<std::string_view> pitfalls = {}; ///< what is often decoded wrongly, one sentence each
+    std::string_view devices = {};              ///< description of its devices, for docs/reference/devices.md
+    std::vector<std::string_view> sources = {}; ///< sources of its frame layouts and numbers
+    std::vector<std::string_view> pitfalls = {}; ///< frequent decoding errors, one sentence each
     std::vector<MotorType> types = {};           ///< motor types that bus.json can name
 
-    /// Recognises its devices in the frames of a bus that nobody described; null: it cannot. Sends nothing.
+    /// Recognises its devices in the frames of a bus without a description; null: not supported. Sends
+    /// nothing.
     Recognition (*recognise)(FrameSpan frames) = nullptr;
 
-    /// The frame at which its devices measure if they are synchronous; null: they cannot be.
+    /// Returns the frame at which synchronous devices measure; null: they cannot be synchronous.
     hal::Frame (*sync)() = nullptr;
-    /// Encodes the frames of all boards of an arm, with the `values` of each, if boards share frames; null:
-    /// they do not.
+    /// Encodes the frames of all boards of an arm, with the `values` of each, if boards share frames;
+    /// otherwise null.
     std::vector<hal::Frame> (*encode_together)(
         std::span<const BusBoard> boards, std::span<const std::array<hal::JointValue, 2>> values) = nullptr;
 };

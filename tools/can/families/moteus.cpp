@@ -38,7 +38,7 @@ const std::vector<FamilyField> moteus_bus_fields{
     {"prefix", "(0; `can.prefix`: bits 28 to 16 of the identifiers)"},
 };
 
-/// `config`: what all controllers have in common.
+/// `config`: common properties of all controllers.
 BusBoard read_moteus_controller(const JsonReader& board, hal::MoteusController::Config config,
                                 std::vector<int>& ids) {
     board.allow_only(names_of(moteus_fields));

@@ -10,8 +10,8 @@ namespace dfdyn::tools {
 /// Maxima of a motor's codes: position (rad), velocity (rad/s), torque (N·m).
 using Maxima = std::array<double, 3>;
 
-/// A motor type and its maxima as delivered, by one library or document in wide use, and by another one where
-/// they disagree. Where they do, only the motor itself is reliable.
+/// A motor type with its factory maxima from one widely used library or document, and from another one if
+/// they disagree. Then only the motor itself is reliable.
 struct MotorType {
     std::string_view name;
     Maxima maxima;

@@ -96,7 +96,7 @@ bool reads_piper_torque(const JsonReader& joints) {
     return effort == "torque";
 }
 
-/// `config`: what the pairs of an arm have in common.
+/// `config`: common properties of the pairs of an arm.
 BusBoard read_piper_pair(const JsonReader& board, hal::PiperPair::Config config) {
     board.allow_only(names_of(piper_fields));
     config.pair = board.whole_number("pair", 1, 3) - 1;
@@ -133,7 +133,7 @@ void read_piper(const JsonReader& joints, const std::filesystem::path& /*folder*
 
 constexpr std::array<std::uint32_t, 3> piper_first_identifiers{0x2A1, 0x2B1, 0x2C1};
 
-/// How many of these joints' speeds are `factor` times the change of their positions.
+/// Returns how many of these joints have speeds of `factor` times the change of their positions.
 bool piper_speeds_are(double factor, const std::vector<CodecFit>& fits) {
     int agree = 0;
     int sure = 0;
@@ -172,7 +172,7 @@ Recognition recognise_piper_arm(FrameSpan frames, std::uint32_t feedback_id) {
         recognition.identifiers.insert({false, id});
     }
     recognition.fields = {{"feedback_id", identifier_text(feedback_id)}};
-    constexpr double rpm = std::numbers::pi / 30 / 0.001; // counts of today for one of old firmware
+    constexpr double rpm = std::numbers::pi / 30 / 0.001; // new speed counts per old one
     if (piper_speeds_are(rpm, fits)) {
         recognition.fields["firmware"] = "rpm";
         recognition.unsure.emplace_back(

@@ -17,25 +17,25 @@ namespace dfdyn::tools {
 /// A board that a family has recognised.
 struct RecognisedBoard {
     std::string name = {};     ///< such as `motor 4`
-    nlohmann::json entry = {}; ///< of `boards`, without its joints
+    nlohmann::json entry = {}; ///< entry of `boards`, without its joints
     int joints = 1;
-    double rate_hz = 0;        ///< of its positions
+    double rate_hz = 0;        ///< rate of its positions
     std::string measured = {}; ///< other results from its frames; "": none
 };
 
-/// What a family has recognised in the frames of a bus that nobody described.
+/// Result of a family's recognition in the frames of a bus without a description.
 struct Recognition {
     std::vector<RecognisedBoard>
-        boards; ///< in the order of the joints, base to tip, as far as it can be guessed
+        boards; ///< in the order of the joints, base to tip, as far as it can be inferred
     nlohmann::json fields = nlohmann::json::object(); ///< of `joints`
-    std::string quantity;                             ///< of its efforts: `tau`, `i`; "" it sends none
-    std::vector<std::string> unsure;                  ///< what the frames alone cannot tell
-    std::vector<unsigned> silent;       ///< motors that are commanded or polled and never answer
-    std::set<BusStreamKey> identifiers; ///< that it explains
+    std::string quantity;                             ///< kind of its efforts: `tau`, `i`; "": none
+    std::vector<std::string> unsure;                  ///< properties that the frames alone do not determine
+    std::vector<unsigned> silent;       ///< motors that are commanded or polled but never answer
+    std::set<BusStreamKey> identifiers; ///< explained identifiers
     double score = 0; ///< number of frames, weighted by how well they fit; compared between families
 };
 
-/// Frames in the order of time.
+/// Frames in order of time.
 using FrameSpan = std::span<const hal::Frame>;
 
 } // namespace dfdyn::tools

@@ -9,7 +9,7 @@ namespace dfdyn::tools::families {
 
 namespace {
 
-/// Accepts torque commands, as currents, where the torque of a current is described.
+/// Accepts torque commands, as currents, if the torque constant is configured.
 class RmdMotor final : public MotorBoard<RmdMotor, hal::RmdMotor> {
   public:
     using MotorBoard::MotorBoard;
@@ -61,7 +61,7 @@ hal::RmdPosition read_rmd_position(const JsonReader& joints) {
     throw joints.error("position", R"("multi_turn", "encoder" or "status")", in_quotes(position));
 }
 
-/// `config`: what all motors have in common.
+/// `config`: common properties of all motors.
 BusBoard read_rmd_motor(const JsonReader& board, hal::RmdMotor::Config config) {
     board.allow_only(names_of(rmd_fields));
     config.motor_id = board.whole_number("motor_id", 1, 32);
@@ -82,7 +82,7 @@ void read_rmd_motors(const JsonReader& joints, const std::filesystem::path& /*fo
         joints, [&](const JsonReader& board) { return read_rmd_motor(board, config); }, description);
 }
 
-/// What the motors of one driver version answer: number of frames by motor and command.
+/// Answers of the motors of one driver version: number of frames by motor and command.
 using RmdAnswers = std::map<int, std::map<unsigned, std::uint64_t>>;
 
 bool is_rmd_answer(unsigned command) {
@@ -100,14 +100,14 @@ RmdAnswers rmd_answers(FrameSpan frames, hal::RmdDriver driver) {
         }
         const int motor = static_cast<int>(frame.id - base);
         const hal::RmdMotor codec({.motor_id = motor, .driver = driver});
-        if (codec.command(frame) == hal::MotorCommand::none) { // V2: no request
+        if (codec.command(frame) == hal::MotorCommand::none) { // V2: not a request
             ++answers[motor][frame.data[0]];
         }
     }
     return answers;
 }
 
-/// The finest position that a motor answers with.
+/// Returns the finest position among the answers of a motor.
 hal::RmdPosition finest_rmd_position(const std::map<unsigned, std::uint64_t>& commands) {
     const auto often = [&](unsigned command) {
         const auto found = commands.find(command);
@@ -134,7 +134,7 @@ void add_rmd_motor(int motor, const JointFit& fit, Recognition& recognition) {
     }
 }
 
-/// Adds what the frames cannot tell of recognised motors.
+/// Adds the properties of recognised motors that the frames do not determine.
 void add_rmd_doubts(hal::RmdPosition position, bool old, std::vector<std::string>& unsure) {
     unsure.emplace_back("torques: efforts are currents without newton_metre_per_ampere");
     if (position == hal::RmdPosition::encoder) {

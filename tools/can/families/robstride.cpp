@@ -34,8 +34,8 @@ class RobstrideMitMotor final : public MotorBoard<RobstrideMitMotor, hal::Robstr
     static ScaleAdvice advice() { return robstride_advice; }
 };
 
-/// LeRobot (1b8c2b6, motors/robstride/tables.py); then the maker's data sheets, where they disagree.
-/// LeRobot's position of the RS06, 112.5, is taken for a typing error. CyberGear: cybergear-docs (17e371b).
+/// LeRobot (1b8c2b6, motors/robstride/tables.py), and the maker's data sheets if they disagree. LeRobot's
+/// position of the RS06, 112.5, is assumed to be a typing error. CyberGear: cybergear-docs (17e371b).
 constexpr double robstride_position_max = 4 * std::numbers::pi;
 constexpr std::array<MotorType, 9> robstride_types{
     {{"RS00", {robstride_position_max, 33, 14}},
@@ -68,7 +68,7 @@ const std::vector<FamilyField> robstride_bus_fields{
                 "identifier with `\"mit\"`)"},
 };
 
-/// Reads what both protocols have in common.
+/// Reads the common fields of both protocols.
 template <class Config>
 Config read_robstride_motor(const JsonReader& board) {
     board.allow_only(names_of(robstride_fields));
@@ -140,7 +140,7 @@ RobstrideAnswers robstride_answers(FrameSpan frames) {
     return answers;
 }
 
-/// Returns the host that gets the most answers.
+/// Returns the host with the most answers.
 RobstrideAnswers::const_iterator main_robstride_host(const RobstrideAnswers& answers) {
     return std::ranges::max_element(answers, {}, [](const auto& host) {
         std::uint64_t sum = 0;
@@ -192,7 +192,7 @@ Recognition recognise_private_robstride(FrameSpan frames) {
     return recognition;
 }
 
-/// Returns 0 if the frame is no feedback of such a motor, 1 if it can be one, more with evidence for it.
+/// Returns 0 if the frame cannot be a feedback of such a motor, 1 if it can be, more with evidence for it.
 double robstride_plausibility(const hal::Frame& frame) {
     const double celsius = hal::RobstrideMitProtocol::temperature(frame);
     return celsius > 150 ? 0 : 1 + (celsius >= 5 && celsius <= 130 ? 1 : 0) + (frame.id == 0xFD ? 0.5 : 0);

@@ -17,12 +17,12 @@
 
 namespace dfdyn::tools {
 
-/// How well a codec explains the frames of a bus, for one joint of it.
+/// Fit of a codec to the frames of a bus, for one joint.
 struct JointFit {
     VelocityCheck velocity;
     std::uint64_t positions = 0;
     std::uint64_t jumps = 0;  ///< between consecutive positions, faster than any joint
-    std::uint64_t at_end = 0; ///< at an end of their code
+    std::uint64_t at_end = 0; ///< positions at an end of their code
     std::uint64_t efforts = 0;
     std::int64_t first_ns = 0, last_ns = 0;
     double last_rad = 0;
@@ -41,7 +41,7 @@ struct CodecFit {
     std::array<JointFit, 2> joint;
     std::uint64_t values = 0, rejected = 0;
 
-    /// True if the frames are those of such a device: enough of them, well-formed, without jumps.
+    /// Returns true if the frames come from such a device: enough of them, well-formed, without jumps.
     bool fits() const noexcept;
 };
 
@@ -61,8 +61,8 @@ CodecFit fit_codec(Codec codec, FrameSpan frames, int joint = 0) {
     return fit;
 }
 
-/// Motors of `first` … `last` that are commanded or polled, but are not among `answering`. `codec_of(motor)`:
-/// a codec with `command`.
+/// Returns the motors of `first` … `last` that are commanded or polled, but are not among `answering`.
+/// `codec_of(motor)`: a codec with `command`.
 template <class CodecOf>
 std::vector<unsigned> silent_motors(FrameSpan frames, unsigned first, unsigned last,
                                     const std::set<unsigned>& answering, CodecOf codec_of) {
@@ -80,7 +80,7 @@ std::vector<unsigned> silent_motors(FrameSpan frames, unsigned first, unsigned l
     return silent;
 }
 
-/// Enough frames to recognise a device by.
+/// Number of frames required to recognise a device.
 inline constexpr std::uint64_t frames_to_recognise = 10;
 
 } // namespace dfdyn::tools

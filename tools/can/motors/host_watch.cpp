@@ -7,7 +7,7 @@ namespace {
 
 using hal::MotorCommand;
 
-constexpr std::uint64_t repeated = 5; ///< as often, it is no single command of a person
+constexpr std::uint64_t repeated = 5; ///< fewer may be commands of a person
 constexpr double share_of_two = 0.05; ///< of all commands; a smaller share may be the start of one program
 
 struct CommandName {

@@ -11,21 +11,21 @@
 
 namespace dfdyn::tools {
 
-/// Counts what other programs command a motor: a check of a bus sends nothing itself.
+/// Counts the commands of other programs to a motor. A bus check itself sends nothing.
 class HostWatch {
   public:
     /// `only_torque`: a control command without stiffness and damping.
     void take(hal::MotorCommand command, bool only_torque) noexcept;
-    /// Counts an answer for another host than the described one.
+    /// Counts an answer to another host than the described one.
     void answered_other_host() noexcept { ++other_host_; }
 
     std::uint64_t count(hal::MotorCommand command) const noexcept {
         return counts_[static_cast<std::size_t>(command)];
     }
 
-    /// What endangers the motor or its values. `motor`: as the messages name it.
+    /// Findings that endanger the motor or its values. `motor`: its name in messages.
     std::vector<BusFinding> findings(const std::string& motor) const;
-    /// What was commanded, as `12 commands, 3 polls`; empty: nothing.
+    /// Summary of the commands, such as `12 commands, 3 polls`; empty: none.
     std::string summary() const;
 
   private:

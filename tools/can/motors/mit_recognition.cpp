@@ -52,13 +52,13 @@ bool SteadyBytes::is_steady(bool alone) const {
     const auto even = std::ranges::count_if(sorted, [&](std::int64_t interval_ns) {
         return 2 * interval_ns > median_ns && 2 * interval_ns < 3 * median_ns;
     });
-    constexpr double least_even = 0.45; // of frames that a random selection has, 0.35
+    constexpr double least_even = 0.45; // a random selection of frames has 0.35
     const bool is_even = static_cast<double>(even) > least_even * static_cast<double>(sorted.size());
     return 10 * jumps_ < steps_ && (alone || is_even);
 }
 
 void drop_selections(std::vector<MitCandidate>& candidates) {
-    constexpr double least_coverage = 0.95; ///< of the frames of an identifier
+    constexpr double least_coverage = 0.95; ///< fraction of the frames of an identifier
     std::map<std::uint32_t, std::pair<int, std::uint64_t>> explained;
     for (const MitCandidate& candidate : candidates) {
         ++explained[candidate.feedback_id].first;
@@ -80,7 +80,7 @@ struct NearTypes {
     Maxima first{}; ///< zeros: no type is near
 };
 
-/// `velocity`: 0 if nothing is known of it; then the first type is taken.
+/// `velocity`: 0 if unknown; then the first type is used.
 NearTypes near_types(std::span<const MotorType> types, double velocity) {
     constexpr double largest_distance = 0.09; // of filters in the motor; maxima of types differ by 10 %
     constexpr double as_close = 0.01;
@@ -115,7 +115,7 @@ MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, con
     const double error = velocity.ratio_error() * assumed;
     const NearTypes near = near_types(search.types, known[1] > 0 ? known[1] : measured);
     result.maxima = near.first;
-    if (result.maxima[1] == 0) { // no type has it
+    if (result.maxima[1] == 0) { // no type has this maximum
         result.maxima = search.types.front().maxima;
         result.maxima[1] = std::stod(rounded_text(measured > 0 ? measured : known[1]));
     }

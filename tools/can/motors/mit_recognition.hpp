@@ -15,8 +15,8 @@
 
 namespace dfdyn::tools {
 
-/// Tells the frames of one motor from a selection of other frames: they come at even intervals, and their
-/// temperatures change slowly.
+/// Distinguishes the frames of one motor from a selection of other frames: they come at even intervals, and
+/// their temperatures change slowly.
 class SteadyBytes {
   public:
     void take(const hal::Frame& frame);
@@ -33,17 +33,17 @@ class SteadyBytes {
 struct MitCandidate {
     std::uint32_t feedback_id = 0;
     unsigned motor = 0;
-    std::uint64_t frames = 0; ///< its own
-    std::uint64_t of_id = 0;  ///< of all motors on its identifier
-    double plausibility = 0;  ///< mean of what `plausible` gave its frames
+    std::uint64_t frames = 0; ///< frames of this motor
+    std::uint64_t of_id = 0;  ///< frames of all motors on its identifier
+    double plausibility = 0;  ///< mean of `plausible` over its frames
     SteadyBytes steady;
-    CodecFit fit; ///< with `assumed`
+    CodecFit fit; ///< fit with `assumed`
     static constexpr Maxima assumed{12.5, 30, 10};
     static constexpr double least_plausibility = 1.5;
 };
 
-/// Removes the candidates of identifiers on which several together leave more than a few frames unexplained:
-/// their byte 0 is no motor number.
+/// Removes the candidates of identifiers on which several together leave more than a few frames unexplained,
+/// because byte 0 is then not a motor number.
 void drop_selections(std::vector<MitCandidate>& candidates);
 
 /// Returns the frames by identifier and motor, with their plausibility. `Protocol`: a MitProtocol.
@@ -105,14 +105,14 @@ std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, 
     return candidates;
 }
 
-/// What the frames tell about the maxima of a motor's codes.
+/// Maxima of a motor's codes, as far as the frames determine them.
 struct MeasuredMaxima {
-    Maxima maxima{};      ///< the most likely
+    Maxima maxima{};      ///< the most likely maxima
     std::string measured; ///< for the report
-    std::string unsure;   ///< "": nothing is
+    std::string unsure;   ///< uncertain properties; "": none
 };
 
-/// How to find the motors of one family.
+/// Parameters of the search for motors of one family.
 struct MotorSearch {
     std::span<const MotorType> types;
     std::string_view ask; ///< instruction to obtain the maxima, for the report
@@ -152,7 +152,7 @@ Recognition recognise_mit_motors(FrameSpan frames, const MotorSearch& search, Pl
         answering.insert(candidate.motor);
     }
     for (const MitCandidate& candidate : candidates) {
-        answering.insert(candidate.feedback_id); // its frames command no motor of that number
+        answering.insert(candidate.feedback_id); // its frames are not commands to a motor of that number
     }
     if (!recognition.boards.empty()) {
         recognition.silent = silent_motors(frames, 1, search.last_motor, answering, [](unsigned motor) {

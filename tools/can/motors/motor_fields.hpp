@@ -17,12 +17,12 @@ namespace dfdyn::tools {
 inline constexpr std::array<const char*, 3> maximum_names{"position_max", "velocity_max", "torque_max"};
 
 /// Reads `motor` and the three maxima. A maximum without a field is taken from the motor's type. `expected`:
-/// what the errors about missing maxima ask for.
+/// expected text in errors about missing maxima.
 Maxima read_maxima(const JsonReader& board, std::span<const MotorType> types,
                    const std::array<std::string, 3>& expected);
 
-/// Marks the motors that answer on one identifier, where their numbers tell them apart. Throws InputError for
-/// two motors of one number on one identifier, and for answers on an identifier of commands.
+/// Marks the motors that share an answer identifier, if their numbers distinguish them. Throws InputError for
+/// two motors with one number on one identifier, and for answers on an identifier of commands.
 template <class Config>
 void share_feedback_ids(const JsonReader& joints, bool own_id, std::vector<Config>& configs) {
     for (std::size_t i = 0; i < configs.size(); ++i) {
@@ -44,8 +44,7 @@ void share_feedback_ids(const JsonReader& joints, bool own_id, std::vector<Confi
     }
 }
 
-/// Adds the motors with MIT mode that `read(board)` gives the configuration of. `own_id`: see
-/// share_feedback_ids.
+/// Adds the motors with MIT mode whose configuration `read(board)` returns. `own_id`: see share_feedback_ids.
 template <class MitBoard, class Codec, class Read>
 void add_mit_motors(const JsonReader& joints, bool own_id, Read read, BusDescription& description) {
     std::vector<typename Codec::Config> configs;
@@ -61,7 +60,7 @@ void add_mit_motors(const JsonReader& joints, bool own_id, Read read, BusDescrip
 /// Reads `newton_metre_per_ampere`; 0 without.
 double read_torque_constant(const JsonReader& board);
 
-/// Fields that all motors have. `angle`: which position the transmission relates to the joint's.
+/// Common fields of all motors. `angle`: the position that the transmission relates to the joint's.
 FamilyField transmission_field();
 FamilyField zero_field();
 

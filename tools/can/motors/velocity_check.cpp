@@ -8,13 +8,13 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double least_speed = 0.05; ///< rad/s; below it in both, the resolution is too coarse
+constexpr double least_speed = 0.05; ///< rad/s; if both are below it, the resolution is too coarse
 constexpr double longest_step_s = 0.1;
 constexpr double least_distance_rad = 0.2;
 constexpr double least_steps = 20;
-constexpr double least_variation = 1e-4; ///< of the velocity, of its mean square
+constexpr double least_variation = 1e-4; ///< ratio of the velocity's variance to its mean square
 constexpr double largest_deviation = 0.1;
-constexpr double errors_to_be_sure = 5; ///< standard errors
+constexpr double errors_to_be_sure = 5; ///< in standard errors
 
 } // namespace
 
@@ -63,7 +63,7 @@ bool VelocityCheck::stands() const noexcept {
     return distance_rad_ < standing * expected_distance_rad_;
 }
 
-/// A constant velocity, with steps of different lengths, shows nothing.
+/// A constant velocity with steps of different lengths contains no information.
 bool VelocityCheck::varies() const noexcept {
     const double mean = velocities_ / std::max(steps_, 1.0);
     return velocity_squares_ - velocities_ * mean > least_variation * velocity_squares_;

@@ -12,11 +12,11 @@ namespace dfdyn::tools {
 /// matter. Positions and velocities may come in different frames.
 class VelocityCheck {
   public:
-    /// Takes what a frame says about one joint.
+    /// Takes the values of one joint in a frame.
     void take(const hal::JointValue& value) noexcept;
 
-    /// Change of the positions over the integral of the velocity; 1 if there is nothing to compare, 0 if the
-    /// positions are constant.
+    /// Ratio of the change of the positions to the integral of the velocity; 1 if there is nothing to
+    /// compare, 0 if the positions are constant.
     double ratio() const noexcept;
     /// Standard error of `ratio`.
     double ratio_error() const noexcept;
@@ -24,7 +24,7 @@ class VelocityCheck {
 
     /// True if enough was compared to state the ratio.
     bool is_sure() const noexcept;
-    /// True if the ratio is surely not 1.
+    /// True if the ratio differs significantly from 1.
     bool contradicts() const noexcept;
 
   private:

@@ -46,7 +46,7 @@ bool overlap(const Recognition& a, const Recognition& b) {
                                [&](const BusStreamKey& key) { return b.identifiers.contains(key); });
 }
 
-/// Every family that explains identifiers better than any other, best first.
+/// Returns each family that explains identifiers better than any other, best first.
 std::vector<RecognisedFamily> recognise_families(std::span<const hal::Frame> frames) {
     std::vector<RecognisedFamily> all;
     for (const JointFamily& family : joint_families()) {
@@ -70,7 +70,7 @@ std::vector<RecognisedFamily> recognise_families(std::span<const hal::Frame> fra
     return chosen;
 }
 
-/// Two significant digits more than the differences between usual rates.
+/// Rounds a rate (Hz) to three significant digits.
 double rounded_rate(double rate_hz) {
     const double step = std::pow(10, std::floor(std::log10(rate_hz)) - 2);
     return std::round(rate_hz / step) * step;

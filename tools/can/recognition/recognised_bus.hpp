@@ -16,7 +16,7 @@
 
 namespace dfdyn::tools {
 
-/// Keeps the frames from the beginning of a bus that nobody described, at most `longest_s` of them.
+/// Stores the first frames of a bus without a description, at most `longest_s` of them.
 class TrafficRecorder {
   public:
     static constexpr double longest_s = 5;
@@ -30,7 +30,7 @@ class TrafficRecorder {
     std::vector<hal::Frame> frames_;
 };
 
-/// A bus whose frames also go to a recorder, and that sends nothing.
+/// A bus whose frames are also recorded, and that sends nothing.
 template <class B>
 class RecordedBus {
   public:
@@ -53,7 +53,7 @@ class RecordedBus {
     TrafficRecorder& recorder_;
 };
 
-/// A family that is on the bus.
+/// A recognised family.
 struct RecognisedFamily {
     std::string_view name;
     Recognition recognition;
@@ -61,12 +61,12 @@ struct RecognisedFamily {
 
 /// Result of the recognition of a bus without a description.
 struct RecognisedBus {
-    double duration_s = 0;                  ///< of the frames that it was recognised by
+    double duration_s = 0;                  ///< duration of the evaluated frames
     std::vector<RecognisedFamily> families; ///< families with joints; the first one is in the draft
-    std::optional<nlohmann::json> draft; ///< a description that can be read; none without joints and efforts
-    std::string draft_error;             ///< why there is no draft
-    std::vector<BusFinding> findings;    ///< of the draft's devices, in these frames
-    std::vector<std::string> commands;   ///< what other programs command
+    std::optional<nlohmann::json> draft;    ///< a valid description; none without joints and efforts
+    std::string draft_error;                ///< reason for a missing draft
+    std::vector<BusFinding> findings;       ///< of the draft's devices, in these frames
+    std::vector<std::string> commands;      ///< commands of other programs
 };
 
 /// Recognises the devices that sent these frames, which must be in the order of time.
