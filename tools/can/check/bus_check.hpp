@@ -19,9 +19,9 @@
 
 namespace dfdyn::tools {
 
-/// Observes a bus and checks who sends how often, and whether the frames agree with the description. Without
-/// a description it checks how regularly each identifier is sent. It sends nothing. Jumps of the clock are
-/// removed from the time stamps (StreamClock). Memory: at most `most_streams` identifiers.
+/// Observes a bus and checks the rate of each sender, and whether the frames agree with the description.
+/// Without a description it checks how regularly each identifier is sent. It sends nothing. Jumps of the
+/// clock are removed from the time stamps (StreamClock). Memory: at most `most_streams` identifiers.
 class BusCheck {
   public:
     static constexpr std::size_t most_streams = 4096;

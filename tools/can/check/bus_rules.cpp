@@ -27,18 +27,19 @@ bool is_silent(const BusCheck& check) {
 }
 
 std::string silence(const BusCheck& check) {
-    return is_silent(check) ? "no frame of anybody in " + number_text(check.duration_s()) + " s" : "";
+    return is_silent(check) ? "no frame in " + number_text(check.duration_s()) + " s" : "";
 }
 
 std::string overload(const BusCheck& check) {
     if (check.peak_load() > largest_load && check.load() <= largest_load) {
         return percent(check.peak_load()) +
-               " of the bit rate in the busiest 0.2 s, stuffed bits at worst; over all " +
+               " of the bit rate in the busiest 0.2 s, with worst-case bit stuffing; on average " +
                percent(check.load());
     }
     const double load = std::max(check.load(), check.expected_load());
     const char* const how = check.load() >= check.expected_load() ? " measured" : " as described";
-    return load > largest_load ? percent(load) + " of the bit rate" + how + ", stuffed bits at worst" : "";
+    return load > largest_load ? percent(load) + " of the bit rate" + how + ", with worst-case bit stuffing"
+                               : "";
 }
 
 std::string strangers(const BusCheck& check) {
@@ -56,11 +57,11 @@ std::string strangers(const BusCheck& check) {
     const double share = possible_bits > 0 ? bits / possible_bits : 0;
     if (share <= largest_unknown_load && check.peak_unknown_load() > largest_unknown_peak) {
         return percent(check.peak_unknown_load()) + " of the bit rate in the busiest 0.2 s, on " +
-               std::to_string(identifiers) + " identifiers that nobody described, first " + first;
+               std::to_string(identifiers) + " undescribed identifiers, first " + first;
     }
     return share > largest_unknown_load
                ? percent(share) + " of the bit rate on " + std::to_string(identifiers) +
-                     " identifiers that nobody described, first " + first
+                     " undescribed identifiers, first " + first
                : "";
 }
 
@@ -80,7 +81,7 @@ std::string jumps(const BusCheck& check) {
         text = "all stamps go " + number_text(std::abs(step_s)) + " s " + (step_s < 0 ? "back" : "ahead") +
                " at once" +
                (clock.steps() > 1 ? ", or less, " + std::to_string(clock.steps()) + " times" : "") +
-               (step_s < 0 ? "" : " (or the whole bus was silent for so long)");
+               (step_s < 0 ? "" : " (or the whole bus was silent for this time)");
     }
     if (const std::int64_t step_ns = check.small_clock_step_ns(); step_ns != 0 && text.empty()) {
         text = formatted("all sources change their phase by %.3g ms at once",
@@ -101,13 +102,13 @@ std::string repeated_times(const BusCheck& check) {
     }
     return static_cast<double>(not_increasing) > least_refused * static_cast<double>(frames)
                ? std::to_string(not_increasing) + " of " + std::to_string(frames) +
-                     " frames not after the one before of their identifier"
+                     " frames are not later than the one before on their identifier"
                : "";
 }
 
 std::string overtaken(const BusCheck& check) {
     return is_overtaken(check) && repeated_times(check).empty()
-               ? counted(check.overtaken(), " times a frame was read after one that was stamped later")
+               ? counted(check.overtaken(), " frames were read after one with a later stamp")
                : "";
 }
 
@@ -120,27 +121,29 @@ struct BusRule {
 };
 
 constexpr std::array<BusRule, 13> bus_rules{{
-    {"silent_bus", "nothing is sent at all", silence, "candump IFACE; ip -details link show IFACE",
+    {"silent_bus", "no frame is sent", silence, "candump IFACE; ip -details link show IFACE",
      "the interface up, with the bit rate of the devices; power, cable; the right interface"},
-    {"overload", "the bus carries more than it can with a margin", overload,
-     "ip -details link show IFACE says the bit rate; canbusload IFACE@BITRATE measures the load",
+    {"overload", "the load of the bus leaves no margin", overload,
+     "ip -details link show IFACE shows the bit rate; canbusload IFACE@BITRATE measures the load",
      "a second bus, lower rates, or CAN FD"},
-    {"unknown_traffic", "others take much of the bus", strangers, "unplug devices until it is gone",
-     "take them off this bus, or make them send less"},
-    {"bus_off", "the controller went off the bus",
+    {"unknown_traffic", "undescribed devices cause much of the load", strangers,
+     "unplug devices until the traffic ends", "remove them from this bus, or reduce their rates"},
+    {"bus_off", "the controller went bus-off",
      [](const BusCheck& check) { return counted(check.counters().bus_off, " times bus-off"); },
      "ip -details -statistics link show IFACE: the state, the error counters, restart-ms",
-     "find the short, the wrong bit rate or the missing termination; set restart-ms so that it comes back"},
-    {"error_passive", "the controller sees many errors", errors,
+     "find the short circuit, the wrong bit rate or the missing termination; set restart-ms for a restart"},
+    {"error_passive", "the controller detects many errors", errors,
      "with the power off 60 Ohm between CAN-H and CAN-L",
      "check termination, cable, and the bit rate of every node"},
-    {"wire_errors", "bits, forms or checksums were wrong on the wire",
-     [](const BusCheck& check) { return counted(check.counters().bus_errors, " error frames of the wire"); },
-     "an oscilloscope on CAN-H and CAN-L; unplug devices until they end",
-     "check termination, cable, stubs, grounding; two devices on one identifier do it too"},
-    {"no_acknowledgement", "nobody listens",
+    {"wire_errors", "bit, form or checksum errors on the wire",
      [](const BusCheck& check) {
-         return counted(check.counters().no_acknowledgements, " frames that nobody acknowledged");
+         return counted(check.counters().bus_errors, " error frames for errors on the wire");
+     },
+     "an oscilloscope on CAN-H and CAN-L; unplug devices until they end",
+     "check termination, cable, stubs, grounding; or two devices send on one identifier"},
+    {"no_acknowledgement", "no other node acknowledges frames",
+     [](const BusCheck& check) {
+         return counted(check.counters().no_acknowledgements, " frames without an acknowledgement");
      },
      "any other powered node on the bus ends it",
      "connect and power the other nodes; the same bit rate everywhere"},
@@ -152,7 +155,7 @@ constexpr std::array<BusRule, 13> bus_rules{{
      "ip -details -statistics link show IFACE: dropped, overrun",
      "read more often and at a real-time priority; filters; a larger receive buffer (net.core.rmem_max)"},
     {"device_lost_frames", "a device lost messages",
-     [](const BusCheck& check) { return counted(check.device_losses(), " times a device said so"); },
+     [](const BusCheck& check) { return counted(check.device_losses(), " reports of a device"); },
      "read the device's status", "send less to it; lower the load"},
     {"interface_down", "the interface went down",
      [](const BusCheck& check) { return counted(check.counters().interface_down, " times down"); },
@@ -161,7 +164,7 @@ constexpr std::array<BusRule, 13> bus_rules{{
      "do not set the clock while recording; stamps of the adapter's hardware"},
     {"time_not_increasing", "time stamps repeat or run backward", repeated_times, "candump -t d IFACE",
      "stamps of the kernel, not of the program that reads"},
-    {"frames_overtaken", "frames are read in another order than they were stamped in", overtaken,
+    {"frames_overtaken", "the order of reading differs from the order of the stamps", overtaken,
      "candump -t a IFACE: the stamps go back by less than a period",
      "one receive queue for all frames of an adapter; one adapter for one bus"},
 }};
@@ -176,44 +179,44 @@ struct DeviceRule {
 };
 
 constexpr std::array<DeviceRule, 13> device_rules{{
-    {hal::Reason::encoder_fault, DeviceRule::ever, "encoder_fault",
-     "a board says that its encoder is in error", "read the board's status",
-     "check the encoder and its cable"},
+    {hal::Reason::encoder_fault, DeviceRule::ever, "encoder_fault", "a board reports an encoder error",
+     "read the board's status", "check the encoder and its cable"},
     {hal::Reason::device_fault, DeviceRule::ever, "device_fault", "a device reports a fault",
-     "read the device's error code", "clear the fault's cause, then the fault"},
+     "read the device's error code", "remove the cause, then clear the fault"},
     {hal::Reason::device_not_operational, DeviceRule::ever, "not_operational",
      "a device is not in its operational state", "read its heartbeat: candump IFACE,700:780",
      "start the node (NMT start)"},
     {hal::Reason::heartbeat_missing, DeviceRule::often, "heartbeat_missing",
-     "a heartbeat is missing that has to vouch for the values", "candump IFACE shows whether it is sent",
+     "a required heartbeat is missing", "candump IFACE shows whether it is sent",
      "enable the device's heartbeat; correct heartbeat_timeout_s"},
     {hal::Reason::qualifying, DeviceRule::at_end, "zeros",
-     "a source shows nothing but zeros, or too little to be believed", "move the joint, or load the sensor",
+     "a source sends only zeros, or too few values to qualify", "move the joint, or load the sensor",
      "wait until the encoder knows its position; calibrate it"},
     {hal::Reason::position_out_of_range, DeviceRule::ever, "position_out_of_range",
-     "a position is beyond what the joint can have", "read the angle with the maker's own program",
+     "a position is beyond the range of the joint", "read the angle with the maker's own program",
      "correct scale and zero, or limit_rad, in the description"},
     {hal::Reason::output_out_of_range, DeviceRule::ever, "output_out_of_range",
-     "an output is beyond what the sensor can show", "unload the sensor and look again",
+     "an output is beyond the range of the sensor", "unload the sensor and look again",
      "correct full scale, calibration or limit in the description"},
     {hal::Reason::output_saturated, DeviceRule::ever, "sensor_saturated",
-     "the sensor is overloaded, or its converter at its end", "unload the sensor and look again",
+     "the sensor is overloaded, or its converter is saturated", "unload the sensor and look again",
      "a lower load, or a sensor of larger range"},
     {hal::Reason::output_frozen, DeviceRule::ever, "sensor_frozen", "the sensor repeats the same raw values",
      "touch the sensor: the bytes do not change (candump -c IFACE)", "restart the sensor"},
     {hal::Reason::output_incomplete, DeviceRule::often, "incomplete_wrench",
-     "one of the two frames of a wrench is missing, or comes late", "candump -t d IFACE,300:700",
+     "one of the two frames of a wrench is missing or late", "candump -t d IFACE,300:700",
      "check the second identifier; lower the load; pair_window_s in the description"},
     {hal::Reason::waiting_for_full_scale, DeviceRule::at_end, "full_scale_unknown",
-     "the sensor has not told its full scale, without which its values mean nothing",
-     "ask it: cansend IFACE ID#1800, and 01 to 05",
-     "dfdyn replay --can asks by itself; or full_scale in the description"},
+     "the sensor has not reported its full scale, without which its values cannot be scaled",
+     "request it: cansend IFACE ID#1800, and 01 to 05",
+     "dfdyn replay --can requests it; or set full_scale in the description"},
     {hal::Reason::full_scale_contradicted, DeviceRule::ever, "full_scale_contradicted",
-     "the sensor reports another full scale than described, or than before",
-     "ask the sensor for the full scale of each channel: cansend IFACE ID#1800, and 01 to 05",
-     "the full scales of the set in use in the description; let nobody change the set while the arm runs"},
-    {hal::Reason::full_scale_implausible, DeviceRule::ever, "full_scale", "the sensor's full scale cannot be",
-     "ask the sensor for the full scale of each channel", "correct it in the sensor or the description"},
+     "the sensor reports a full scale that differs from the described or the previous one",
+     "request the full scale of each channel: cansend IFACE ID#1800, and 01 to 05",
+     "describe the full scales of the set in use; do not change the set while the arm runs"},
+    {hal::Reason::full_scale_implausible, DeviceRule::ever, "full_scale",
+     "the sensor's full scale is implausible", "request the full scale of each channel",
+     "correct it in the sensor or the description"},
 }};
 
 /// Returns true if zero readings are possible. A source also qualifies after each gap.

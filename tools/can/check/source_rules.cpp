@@ -112,7 +112,7 @@ struct Source {
 
 std::string rates(const Source& source) {
     return formatted("%.4g frames/s", source.stream.rate_hz()) +
-           formatted(" where %.4g are described", source.stream.expected_hz);
+           formatted(", described %.4g", source.stream.expected_hz);
 }
 
 /// Returns an undescribed identifier with the properties of a silent described source; null if there is none.
@@ -138,12 +138,12 @@ struct Rule {
 };
 
 constexpr std::array<Rule, 13> rules{{
-    {"wrong_identifier", "is not sent; another identifier is, just so",
+    {"wrong_identifier", "is not sent, but a similar source on another identifier",
      [](const Source& s) { return s.silent() && impostor(s) != nullptr; },
      [](const Source& s) {
          const auto& [key, stream] = *impostor(s);
-         return id_text(key) + formatted(", which nobody described, sends %.4g frames/s", stream.rate_hz()) +
-                " of " + std::to_string(stream.length) + " bytes, as this one should";
+         return id_text(key) + formatted(", not described, sends %.4g frames/s", stream.rate_hz()) + " of " +
+                std::to_string(stream.length) + " bytes, the expected properties of this one";
      },
      "move the joint, or load the sensor, by hand: the bytes of those frames change (candump -c IFACE)",
      "correct the address in the description, or in the device"},
@@ -152,30 +152,30 @@ constexpr std::array<Rule, 13> rules{{
      [](const Source& s) { return formatted("no frame in %.3g s", s.check.duration_s()); },
      "candump -n 1 IFACE,ID:MASK waits for one frame of it",
      "check the device's power and cable; start its transmission; check its address in the description"},
-    {"source_stopped", "is not sent any more", [](const Source& s) { return s.stopped(); },
+    {"source_stopped", "is no longer sent", [](const Source& s) { return s.stopped(); },
      [](const Source& s) {
          return formatted("last frame %.3g s before the end", s.check.age_s(s.stream)) +
                 formatted(", %.4g frames/s before", s.stream.rate_hz());
      },
      "candump -n 1 IFACE,ID:MASK waits for one frame of it",
-     "check the device's power and cable: no bus error tells of a node that is gone"},
+     "check the device's power and cable; a missing node causes no bus error"},
     {"id_collision", "is sent too often: two devices may share the identifier",
      [](const Source& s) { return s.collides(); }, rates,
-     "unplug the device: frames that still come are another's",
+     "unplug the device: remaining frames come from another one",
      "give one of the two another identifier; or correct rate_hz in the description"},
-    {"duplicated_frames", "is received twice now and then", [](const Source& s) { return s.duplicated(); },
+    {"duplicated_frames", "is sometimes received twice", [](const Source& s) { return s.duplicated(); },
      [](const Source& s) {
-         return std::to_string(s.stream.additional()) + " frames more than the sequence has, of which " +
+         return std::to_string(s.stream.additional()) + " frames more than the sequence has; " +
                 std::to_string(s.stream.copies) + " repeat the one before";
      },
-     "a second computer on the bus: if it has them once, this one's adapter or gateway repeats them",
+     "a second computer on the bus: if it receives them once, this one's adapter or gateway repeats them",
      "the gateway's or adapter's routing: no frame may come back to its bus"},
     {"fast_source", "is sent more often than described",
      [](const Source& s) {
          return s.is_described() && s.ratio() > largest_rate && !s.collides() && !s.duplicated();
      },
-     rates, "ask the device for its period", "correct rate_hz in the description, or the device's period"},
-    {"slow_source", "is sent too seldom", [](const Source& s) { return s.slow(); },
+     rates, "read the period from the device", "correct rate_hz in the description, or the device's period"},
+    {"slow_source", "is sent too rarely", [](const Source& s) { return s.slow(); },
      [](const Source& s) {
          return rates(s) +
                 formatted("; longest pause %.3g ms", 1e-6 * static_cast<double>(s.stream.longest_gap_ns));
@@ -188,30 +188,30 @@ constexpr std::array<Rule, 13> rules{{
                 std::to_string(s.stream.missing() + s.stream.count) +
                 " frames are missing in a sequence of " + formatted("%.4g frames/s", s.stream.expected_hz);
      },
-     "a second computer on the bus: if it has the frames, this one loses them",
+     "a second computer on the bus: if it receives the frames, this one loses them",
      "lower the load, read at a real-time priority; check cable and connectors, and the device's own errors"},
     {"gaps", "has gaps", [](const Source& s) { return s.has_gaps(); },
      [](const Source& s) {
          return formatted("%.3g ms without a frame", 1e-6 * static_cast<double>(s.stream.longest_gap_ns)) +
-                formatted(", where they come every %.3g ms", 1e3 / s.stream.expected_hz);
+                formatted(", expected every %.3g ms", 1e3 / s.stream.expected_hz);
      },
      "ip -details -statistics link show IFACE: dropped and overrun frames are this computer's losses",
-     "read at a real-time priority, lower the load; else look for a loose cable or a device that restarts"},
-    {"jitter", "comes unsteadily", [](const Source& s) { return s.jitters(); },
+     "read at a real-time priority, lower the load; or find a loose cable or a device that restarts"},
+    {"jitter", "has irregular intervals", [](const Source& s) { return s.jitters(); },
      [](const Source& s) {
-         return formatted("intervals of standard deviation %.3g ms", 1e3 * s.stream.jitter_s()) +
-                formatted(" about %.3g ms", 1e3 / s.stream.expected_hz);
+         return formatted("standard deviation of the intervals %.3g ms", 1e3 * s.stream.jitter_s()) +
+                formatted(", period %.3g ms", 1e3 / s.stream.expected_hz);
      },
-     "record on another computer: if it is steady there, this one's stamps are late",
-     "give it a lower identifier, lower the load, let drives measure at SYNC; or trigger on timer"},
-    {"late_frames", "has frames that come late", [](const Source& s) { return s.is_late(); },
+     "record on another computer: if it is regular there, this one's stamps are late",
+     "a lower identifier, a lower load, or drives that measure at SYNC; or trigger on timer"},
+    {"late_frames", "has late frames", [](const Source& s) { return s.is_late(); },
      [](const Source& s) {
          return std::to_string(s.stream.off_sequence()) + " of " + std::to_string(s.stream.count) +
                 formatted(" frames are more than 40 %% of %.3g ms off", 1e3 / s.stream.expected_hz);
      },
-     "the same frames recorded by another computer: if they are in time there, this one's stamps are late",
-     "lower the load; a lower identifier; a gateway or program that does not hold frames back"},
-    {"late_answers", "answers a SYNC at other times than usual, perhaps after the next one",
+     "record on another computer: if the frames are in time there, this one's stamps are late",
+     "lower the load; a lower identifier; a gateway or program that does not delay frames"},
+    {"late_answers", "answers a SYNC at unusual times, perhaps after the next one",
      [](const Source& s) { return s.answers_late(); },
      [](const Source& s) {
          return std::to_string(s.stream.answers.late()) + " of " + std::to_string(s.stream.count) +
@@ -219,11 +219,11 @@ constexpr std::array<Rule, 13> rules{{
      },
      "candump -t d IFACE: the time from 080 to the answer",
      "a longer SYNC period, or a lower load, so that all answers come before the next SYNC"},
-    {"rejected_frames", "has frames that its device does not send",
+    {"rejected_frames", "has frames of a wrong length or type",
      [](const Source& s) { return s.stream.rejected + s.stream.other_forms() > 0; },
      [](const Source& s) {
          return std::to_string(s.stream.rejected + s.stream.other_forms()) + " of " +
-                std::to_string(s.stream.count + s.stream.other_forms()) + " have another length or kind";
+                std::to_string(s.stream.count + s.stream.other_forms()) + " have a different length or type";
      },
      "candump IFACE,ID:MASK shows their length", "correct the device's mapping, or the description's"},
 }};

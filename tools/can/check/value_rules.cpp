@@ -53,17 +53,17 @@ std::uint64_t caused_by(const Joint& joint, JumpCause cause) {
 }
 
 constexpr std::array<JointRule, 12> joint_rules{{
-    {"device_restarted", "has a board that restarted while it sent", false,
+    {"device_restarted", "has a board that restarted while it was sending", false,
      [](const Joint& joint) { return joint.restarts; },
      [](const Joint&, std::uint64_t count) { return std::to_string(count) + " boot-ups between its values"; },
      "candump IFACE,700:780 shows 00, the boot-up", "check the board's supply; look up its last error"},
     {"position_wrap", "has an encoder that wraps after a turn", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::wrap); },
      [](const Joint& joint, std::uint64_t count) {
-         return of_jumps(joint, count) + " are a turn away from the one before";
+         return of_jumps(joint, count) + " are one turn from the one before";
      },
      "turn the joint by hand past that angle", "let the device count turns, or move its zero; zero_rad"},
-    {"position_jump", "has positions that it cannot have reached", false,
+    {"position_jump", "has impossible jumps of the position", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::unknown); },
      [](const Joint& joint, std::uint64_t count) {
          return of_jumps(joint, count) +
@@ -75,19 +75,19 @@ constexpr std::array<JointRule, 12> joint_rules{{
      [](const Joint& joint) { return caused_by(joint, JumpCause::zero_lost); },
      [](const Joint& joint, std::uint64_t count) {
          return jumps_text(joint, count) +
-                " times its positions go on from the device's own zero, far from the "
+                " times its positions continue from the device's own zero, far from the "
                 "one before";
      },
      "read the angle with the maker's own program before and after switching the board off and on",
      "check the board's supply; set its zero, or use an absolute encoder; start the program again"},
-    {"bits_flipped", "has single positions that are far off", false,
+    {"bits_flipped", "has single wrong positions", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::bits_flipped); },
      [](const Joint& joint, std::uint64_t count) {
-         return jumps_text(joint, count) + " jumps, after each of which the position comes back at once";
+         return jumps_text(joint, count) + " jumps, each with an immediate return";
      },
-     "the checksum of CAN finds what happens on the wire: read the device's own value beside its frames",
+     "CAN's checksum detects errors on the wire, so compare the device's own value with its frames",
      "memory of the device or of a gateway; the encoder's cable"},
-    {"bit_stuck", "has positions that are one bit off for a time", false,
+    {"bit_stuck", "has a stuck bit in its positions", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::bit_stuck); },
      [](const Joint& joint, std::uint64_t count) {
          return jumps_text(joint, count) +
@@ -95,29 +95,28 @@ constexpr std::array<JointRule, 12> joint_rules{{
      },
      "turn the joint slowly: the same bit never changes (candump -b IFACE)",
      "a line of a parallel encoder; the encoder's memory"},
-    {"frames_replayed", "shows positions of an earlier time", false,
+    {"frames_replayed", "repeats positions of an earlier time", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::frames_replayed); },
      [](const Joint& joint, std::uint64_t count) {
-         return jumps_text(joint, count) +
-                " jumps to positions that repeat earlier ones, one after the other";
+         return jumps_text(joint, count) + " jumps to positions that repeat earlier ones in order";
      },
      "stop all programs that send on this bus, then look again", "stop the program that replays a log here"},
-    {"nodes_swapped", "shows the positions of another joint", false,
+    {"nodes_swapped", "has the positions of another joint", false,
      [](const Joint& joint) { return caused_by(joint, JumpCause::nodes_swapped); },
      [](const Joint& joint, std::uint64_t count) {
          return jumps_text(joint, count) +
-                " jumps to where another joint was, which jumped to this one at once";
+                " jumps to the position of another joint, which jumped to this one's at the same time";
      },
      "move the joint by hand: the other joint's bytes change", "the identifiers of the two boards"},
-    {"position_zeros", "shows zeros between other positions", false,
+    {"position_zeros", "has zeros between other positions", false,
      [](const Joint& joint) { return joint.watch.zeros(); },
      [](const Joint& joint, std::uint64_t count) { return of_positions(joint, count) + " are exactly 0"; },
      "candump IFACE: the bytes of the position are 0",
-     "a board sends 0 while it restarts, or where it has no estimate: check its supply and encoder"},
-    {"encoder_frozen", "has an encoder that stands while the joint moves", false,
+     "a board sends 0 while it restarts or has no estimate: check its supply and encoder"},
+    {"encoder_frozen", "has an encoder that is frozen while the joint moves", false,
      [](const Joint& joint) { return joint.watch.frozen_positions(); },
      [](const Joint& joint, std::uint64_t count) {
-         return of_positions(joint, count) + " repeat the one before, after a stop that no joint can do";
+         return of_positions(joint, count) + " repeat the one before, after an impossibly sudden stop";
      },
      "move the joint by hand: the bytes do not change", "check the encoder and its cable; restart the board"},
     {"effort_frozen", "has an effort that does not change while the joint moves", true,
@@ -126,8 +125,8 @@ constexpr std::array<JointRule, 12> joint_rules{{
          return of_efforts(joint, count) + " are the same number";
      },
      "load the joint by hand: the bytes do not change",
-     "map the effort that is measured, not the one commanded; restart the drive"},
-    {"effort_saturated", "has an effort at the end of its numbers", true,
+     "map the measured effort, not the commanded one; restart the drive"},
+    {"effort_saturated", "has an effort at the end of its range", true,
      [](const Joint& joint) { return joint.watch.saturated_efforts(); },
      [](const Joint& joint, std::uint64_t count) { return of_efforts(joint, count) + " are at an end"; },
      "candump IFACE: FF7F or 0080 in the effort's bytes",

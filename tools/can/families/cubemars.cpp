@@ -16,7 +16,7 @@ class CubemarsMitMotor final : public MotorBoard<CubemarsMitMotor, hal::Cubemars
     using MotorBoard::MotorBoard;
     static bool takes_torque() { return true; }
     static ScaleAdvice advice() {
-        return {"look the motor's type up on its label, and its ranges in its manual",
+        return {"read the motor's type on its label, and its ranges in its manual",
                 "motor, or velocity_max; check torque_max, too"};
     }
 };
@@ -153,7 +153,7 @@ void add_cubemars_servo(unsigned motor, const JointFit& fit, Recognition& recogn
         board.measured =
             "pole pairs times gear ratio " + rounded_text(pairs_and_gear) + ", from its positions";
     } else {
-        recognition.unsure.push_back(board.name + ": it hardly moved, so that its gear is a guess");
+        recognition.unsure.push_back(board.name + ": it moved too little to determine its gear");
     }
     recognition.boards.push_back(std::move(board));
 }
@@ -208,7 +208,7 @@ JointFamily cubemars() {
         .pitfalls =
             {"The torque in MIT mode is a current times a constant, without friction.",
              "For the AK80-9 the maker has 0.091 N·m/A, TMotorCANControl measured 0.115: 26 % more.",
-             "Speeds in servo mode are electrical: pole pairs and gear turn them into those of the joint.",
+             "Speeds in servo mode are electrical: pole pairs and gear convert them to those of the joint.",
              "Old firmware sends six bytes in MIT mode, without temperature and error.",
              "Some firmware has another packet number in the identifiers of servo mode, or none."},
         .types = {cubemars_types.begin(), cubemars_types.end()},

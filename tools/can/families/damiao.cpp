@@ -124,11 +124,12 @@ JointFamily damiao() {
                     "enactic/openarm_can `dm_motor_control.cpp` (98666042)",
                     "otegami/openarm `motor-can.md`"},
         .pitfalls =
-            {"The maxima are registers 21, 22 and 23 that anybody can change; they are not in the frames.",
+            {"The maxima are registers 21, 22 and 23, which any program can change; they are not in the "
+             "frames.",
              "Libraries disagree on the defaults: velocities of one DM4340 differ by 25 %.",
-             "An answer about a register, or a poll, decoded as feedback gives a position near -PMAX.",
-             "The high nibble of byte 0 is the state; a state that no document lists is a fault.",
-             "A motor that does not answer is no joint at 0."},
+             "An answer about a register, or a poll, if decoded as feedback, gives a position near -PMAX.",
+             "The high nibble of byte 0 is the state; an undocumented state is a fault.",
+             "A motor that does not answer is not a joint at 0."},
         .types = {damiao_types.begin(), damiao_types.end()},
         .recognise = recognise_damiao_motors};
 }

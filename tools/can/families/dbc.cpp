@@ -58,7 +58,7 @@ JointFamily dbc_joints() {
                               "(optional), each `message`, `signal` of the DBC file, `scale` (1), "
                               "`offset` (0); of a position also `unit` (`rad`, `deg`, `turn`): value = (what "
                               "the DBC file says · scale + offset) in that unit"}},
-            .fields = {{"file", "(the DBC file, beside the description)"}},
+            .fields = {{"file", "(the DBC file, relative to the description)"}},
             .read = read_joints,
             .devices = "Joints whose messages a DBC file describes",
             .encode_together = encode_together};
@@ -68,7 +68,7 @@ SensorFamily dbc_sensor() {
     return {.name = "dbc",
             .fields = {{"file", ""},
                        {"wrench",
-                        "(fx fy fz mx my mz, each `message`, `signal`, `scale`, `offset` as of a joint; "
+                        "(fx fy fz mx my mz, each `message`, `signal`, `scale`, `offset` as for a joint; "
                         "in two frames, which are two messages or two variants (`m0`, `m1`) of a "
                         "multiplexed one)"}},
             .devices = "Force/torque sensors whose messages a DBC file describes",

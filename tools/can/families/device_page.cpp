@@ -58,7 +58,7 @@ std::string device_page() {
         text += list_of("Common decoding errors:", family.pitfalls);
         text += list_of("Sources:", family.sources);
         text +=
-            family.recognise == nullptr ? "" : "\n`buscheck` recognises it on a bus that nobody described.\n";
+            family.recognise == nullptr ? "" : "\n`buscheck` recognises it on a bus without a description.\n";
     }
     for (const SensorFamily& family : sensor_families()) {
         text += section_of(family);

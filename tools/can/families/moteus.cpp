@@ -84,7 +84,7 @@ void add_moteus_controller(unsigned id, std::uint32_t prefix, std::uint32_t host
         .name = "controller " + std::to_string(id), .entry = {{"id", id}}, .rate_hz = fit.rate_hz()};
     if (fit.efforts == 0) {
         recognition.unsure.push_back(
-            board.name + ": nobody asks for its torque (register 3), without which it has no efforts");
+            board.name + ": no program requests its torque (register 3), so that it has no efforts");
     }
     recognition.boards.push_back(std::move(board));
     const std::uint32_t reply = prefix << 16U | id << 8U | host;

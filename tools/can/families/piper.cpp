@@ -222,9 +222,9 @@ JointFamily piper() {
                      "Bits 4 and 7 of a drive's status changed their meaning on 2024-07-25.",
                      "The document has unsigned currents, the SDK decodes signed ones.",
                      "The current on the supply is always 0 for the small motors.",
-                     "The six angles are in three frames that are not measured together.",
-                     "The SDK's effort is a current times a factor, no torque sensor.",
-                     "The SDK's encoder spreads a commanded torque over ±8 N·m, its documentation says ±18."},
+                     "The six angles are in three frames that are measured at different times.",
+                     "The SDK's effort is a current times a factor, not from a torque sensor.",
+                     "The SDK scales a commanded torque to ±8 N·m; its documentation has ±18."},
         .recognise = recognise_piper};
 }
 

@@ -126,7 +126,7 @@ void add_rmd_motor(int motor, const JointFit& fit, Recognition& recognition) {
         .name = "motor " + std::to_string(motor), .entry = {{"motor_id", motor}}, .rate_hz = fit.rate_hz()};
     if (fit.efforts == 0) {
         recognition.unsure.push_back(board.name +
-                                     ": nobody asks for its current (0x9C), without which it has no efforts");
+                                     ": no program requests its current (0x9C), so that it has no efforts");
     }
     recognition.boards.push_back(std::move(board));
     for (const std::uint32_t base : {0x140U, 0x240U}) {

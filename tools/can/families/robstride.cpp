@@ -9,7 +9,7 @@ namespace dfdyn::tools::families {
 
 namespace {
 
-constexpr ScaleAdvice robstride_advice{"look the motor's type up on its label, and its ranges in its manual",
+constexpr ScaleAdvice robstride_advice{"read the motor's type on its label, and its ranges in its manual",
                                        "motor, or velocity_max; check torque_max, too"};
 
 /// Accepts torque commands: the motor's own command with zero stiffness and damping.
@@ -229,11 +229,11 @@ JointFamily robstride() {
                     "huggingface/lerobot `motors/robstride/` (024196a, 1b8c2b6)"},
         .pitfalls = {"Signals are big-endian, parameters little-endian.", "The angle saturates at ±4π.",
                      "Two programs that poll get answers with two hosts in bits 7 to 0.",
-                     "In MIT mode all motors answer on one identifier; byte 0 tells them apart.",
-                     "Bytes 6 and 7 are one temperature in 0.1 °C, where Damiao has two.",
+                     "In MIT mode all motors answer on one identifier; byte 0 distinguishes them.",
+                     "Bytes 6 and 7 are one temperature in 0.1 °C; Damiao has two.",
                      "LeRobot's `sync_read` polls by clearing faults (FF … FB).",
                      "Manuals disagree on the order of host and motor in a fault frame; both are accepted.",
-                     "LeRobot's position_max of the RS06, 112.5, is taken for a typing error."},
+                     "LeRobot's position_max of the RS06, 112.5, is assumed to be a typing error."},
         .types = {robstride_types.begin(), robstride_types.end()},
         .recognise = recognise_robstride};
 }

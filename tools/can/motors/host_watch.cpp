@@ -38,7 +38,7 @@ std::vector<BusFinding> HostWatch::findings(const std::string& motor) const {
     const std::string confirm = "stop the other programs one by one, and look again";
     const std::uint64_t clears = count(MotorCommand::clear_faults);
     if (clears >= repeated) {
-        findings.push_back({"faults_cleared", "a program clears the faults of " + motor + " again and again",
+        findings.push_back({"faults_cleared", "a program clears the faults of " + motor + " repeatedly",
                             times(clears), confirm,
                             "read positions without clearing faults; some libraries do it to poll a motor"});
     }
@@ -51,7 +51,7 @@ std::vector<BusFinding> HostWatch::findings(const std::string& motor) const {
     const std::uint64_t polls = count(MotorCommand::poll);
     if (polls >= repeated && commands >= repeated && static_cast<double>(polls) > share_of_two * commands) {
         findings.push_back({"polled_beside_commands",
-                            "a program polls " + motor + " beside the one that moves it",
+                            "a program polls " + motor + " in addition to the one that commands it",
                             std::to_string(count(MotorCommand::poll)) + " polls, " +
                                 std::to_string(count(MotorCommand::control)) + " commands",
                             confirm, "one program on the bus; its answers come in addition, at other times"});
@@ -59,8 +59,7 @@ std::vector<BusFinding> HostWatch::findings(const std::string& motor) const {
     if (changes_ >= 2 * repeated && static_cast<double>(changes_) > share_of_two * commands) {
         findings.push_back(
             {"two_controllers", "two programs command " + motor,
-             std::to_string(changes_) +
-                 " times a command with stiffness or damping follows one without, or the reverse",
+             std::to_string(changes_) + " changes between commands with and without stiffness or damping",
              confirm, "one program that commands the arm"});
     }
     if (other_host_ >= repeated) {

@@ -124,7 +124,7 @@ MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, con
                           " rad/s, from its positions";
     }
     if (known[1] == 0 && !sure) {
-        result.unsure = "it hardly moved, so that its type is a guess; " + ask;
+        result.unsure = "it moved too little to determine its type; " + ask;
     } else if (near.velocities.empty()) {
         result.unsure = "no known type has a velocity_max of " + rounded_text(measured) + " rad/s; " + ask;
     } else if ((known[2] == 0 && near.torques.size() > 1) || (known[1] == 0 && near.velocities.size() > 1)) {

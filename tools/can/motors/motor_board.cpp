@@ -14,16 +14,16 @@ std::vector<BusFinding> velocity_findings(const VelocityCheck& check, int joint,
                                  " times as fast, over " + rounded_text(check.distance_rad()) + " rad";
     constexpr double standing = 0.02;
     if (std::abs(check.ratio()) < standing) {
-        return {{"encoder_frozen", name + " stands while its motor reports a velocity", evidence,
+        return {{"encoder_frozen", name + " does not move while its motor reports a velocity", evidence,
                  "move the joint by hand: the bytes of its position do not change",
                  "check the encoder and its cable; restart the motor"}};
     }
     if (check.ratio() < 0) {
         return {{"velocity_sign", name + " moves against its motor's velocity", evidence,
                  "turn the joint by hand: position and velocity have the same sign",
-                 "the sign of the motor's transmission or of its encoder; one of both is wrong"}};
+                 "correct the sign of the motor's transmission or of its encoder"}};
     }
-    return {{"velocity_scale", name + " moves at another speed than its motor's velocity", evidence,
+    return {{"velocity_scale", name + " moves at a speed that differs from its motor's velocity", evidence,
              advice.confirm, advice.fix}};
 }
 

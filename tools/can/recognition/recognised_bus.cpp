@@ -152,7 +152,7 @@ RecognisedBus recognise_bus(std::span<const hal::Frame> frames) {
                                            " is commanded and never answers",
                                        "commands to it, and no frame of it",
                                        "read its state with the maker's own program",
-                                       "check the motor's power, cable and number; it is no joint at 0"});
+                                       "check the motor's power, cable and number; it is not a joint at 0"});
         }
     }
     const RecognisedFamily& family = result.families.front();

@@ -33,7 +33,7 @@ enum class PiperFirmware : std::uint8_t {
 /// A second arm on the bus sends on 0x2B1 or 0x2C1 instead of 0x2A1, and on the seven that follow.
 ///
 /// Efforts are currents. The SDK's "effort" is the current times 1.18125 (joints 1 to 3) or 0.95844 N·m/A.
-/// The SDK's encoder spreads a commanded torque over ±8 N·m, its documentation says ±18.
+/// The SDK scales a commanded torque to ±8 N·m; its documentation has ±18.
 ///
 /// Values carry `encoder_fault` while the arm does not hear the joint, `device_fault` with a status bit,
 /// `device_not_operational` while the drive is not enabled.
