@@ -55,7 +55,7 @@ std::size_t overrun(SocketCanBus& bus, const std::string& interface) {
 
 } // namespace
 
-TEST_CASE("frames that were not read in time are counted as candump counts them") {
+TEST_CASE("frames that were not read in time are counted like by candump") {
     SocketCanBus bus(on_vcan0());
     const Background candump("candump -L -d vcan0");
     candump.signal(SIGSTOP);
@@ -85,7 +85,7 @@ TEST_CASE("lost frames are counted once and the count continues after the interf
     run("ip link del vcan4");
 }
 
-TEST_CASE("a drain ends at its bound while frames keep arriving and reports that some are left") {
+TEST_CASE("a drain ends at its bound while frames keep arriving and reports waiting frames") {
     constexpr std::size_t bound = 8;
     SocketCanBus bus(on_vcan0());
     const Background cangen("cangen vcan0 -g 0", Background::Ready::at_once);

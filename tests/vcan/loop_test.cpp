@@ -64,7 +64,7 @@ std::string undisturbed(const std::function<std::string()>& attempt,
     return said;
 }
 
-/// Whether the loop with this output was never so late that its tracking error means nothing.
+/// Returns true if the loop with this output was never so late that its tracking error is meaningless.
 bool was_in_time(const std::string& said) {
     return stopped_by(said, {"requested"}) && number_after(said, "ticks, ", "pace: ") < 20 &&
            number_after(said, "at most ", "pace: ") < 3000; // µs late; a period is 10 ms
@@ -136,7 +136,7 @@ TEST_CASE("a plant loses the frames of its scenario's faults from their time on"
     CHECK(std::abs(number_after(said, "ticks, ") - 155) < 15);
 }
 
-TEST_CASE("over three lost cycles and late ticks of the loop no command steps by a tenth of its limit",
+TEST_CASE("over three lost cycles and late ticks of the loop no command changes by a tenth of its limit",
           "[virtual_time]") {
     const TemporaryDirectory directory;
     const std::string scenario =
@@ -206,7 +206,7 @@ TEST_CASE("during a flood a tick reads a bounded number of frames and the loop r
     CHECK(stopped_by(said, {"requested", "no_position", "missed_deadlines"}));
 }
 
-TEST_CASE("over the bus a loop learns the payload of its arm", "[virtual_time]") {
+TEST_CASE("a loop learns the payload of its arm over the bus", "[virtual_time]") {
     const TemporaryDirectory directory;
     const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
     const std::string scenario =
@@ -235,8 +235,7 @@ TEST_CASE("over the bus a loop learns the payload of its arm", "[virtual_time]")
     CHECK(number_after(learned, second_window) < number_after(nominal, second_window) / 2);
 }
 
-TEST_CASE("over buses of Damiao motors and of moteus controllers loops learn the payloads of their arms",
-          "[virtual_time]") {
+TEST_CASE("loops learn payloads over buses of Damiao motors and of moteus controllers", "[virtual_time]") {
     const TemporaryDirectory directory;
     const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
     const std::string scenario =

@@ -54,7 +54,7 @@ std::vector<Frame> frames_of(const std::string& log) {
 
 } // namespace
 
-TEST_CASE("candump receives the frames of dfdyn play in order, at the rate of the log or another") {
+TEST_CASE("candump receives the frames of dfdyn play in order, at the log's rate or a multiple of it") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<Frame> played;
     std::vector<Frame> on_the_wire;

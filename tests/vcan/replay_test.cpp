@@ -49,7 +49,7 @@ LiveAndReplayed live_and_replayed(const IcubLog& log) {
 
 } // namespace
 
-TEST_CASE("predictions on a live bus equal those from its recording bit for bit", "[virtual_time]") {
+TEST_CASE("predictions on a live bus are bit-identical to those from its recording", "[virtual_time]") {
     // Real time uses 100 Hz, because a booted kernel gave too few valid ticks at 1 kHz.
     const int rate_hz = dfdyn::tests::virtual_time() ? 1000 : 100;
     const int rows = 2 * rate_hz;

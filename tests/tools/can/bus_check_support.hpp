@@ -83,12 +83,12 @@ inline BusDescription described(const std::string& text) {
     return tools::read_bus_description(directory.write("bus.json", text));
 }
 
-/// An output of the arm without noise. It is within the range of the efforts of every description.
+/// Returns an output of the arm without noise, within the range of the efforts of every description.
 inline double sound_output(const BusDescription& description, double time_s) {
     return (description.sensor ? 2 : 1) + 0.5 * std::sin(2 * time_s);
 }
 
-/// Frames that the devices of an arm in motion would have sent. `shift_rad` is added to all positions.
+/// Returns the frames of the devices of an arm in motion. `shift_rad` is added to all positions.
 inline Frames sound(const BusDescription& description, double duration_s = 4, double jitter_us = 20,
                     double shift_rad = 0) {
     Frames frames;

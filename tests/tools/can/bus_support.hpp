@@ -49,7 +49,7 @@ inline std::string icub_arm_at(int rate_hz) {
     return text.replace(text.find(rate), rate.size(), "\"sample_rate_hz\": " + std::to_string(rate_hz));
 }
 
-/// A log of the iCub's arm under a wrench, by default 0.5 s at 1 kHz.
+/// Writes a log of the iCub's arm under a wrench, by default 0.5 s at 1 kHz.
 struct IcubLog {
     TemporaryDirectory directory;
     std::filesystem::path path = directory.path() / "run.log";

@@ -36,7 +36,7 @@ TrainedModel ur5_model() {
 
 double to_step(double value, double step) { return std::round(value / step) * step; }
 
-/// A recording quantised with these steps, from row `first` on.
+/// Returns a recording quantised with these steps, from row `first` on.
 Recording quantised(Recording recording, std::size_t first, double position_step, double output_step) {
     for (double& q : recording.position.values) {
         q = to_step(q, position_step);
@@ -98,7 +98,7 @@ BusDescription without_full_scale() {
 } // namespace
 
 TEST_CASE(
-    "a UR5's recording as six drives on a bus gives bit for bit the predictions of the quantised recording") {
+    "a UR5's recording as six drives on a bus gives bit-identical predictions to the quantised recording") {
     const Recording recording = read_no7(1500);
     const BusDescription bus = read_bus_description(bus_folder + "ur5_cia402.json");
     const TemporaryDirectory directory;
@@ -133,8 +133,7 @@ TEST_CASE("a log that was cut off in the middle of a line loses only that line")
                           Catch::Matchers::ContainsSubstring("expected"));
 }
 
-TEST_CASE(
-    "without full scales a wrench is predicted and never learned but with them on the bus it is learned") {
+TEST_CASE("a wrench is learned only if its full scales are on the bus") {
     const IcubLog log;
     const BusDescription bus = without_full_scale();
     const ReplayedRecording told = replay_can(log.model, bus, log.path).replayed;

@@ -93,7 +93,7 @@ TEST_CASE("bus options without a bus are rejected") {
     CHECK_FALSE(std::filesystem::exists(bench.path("no.log")));
 }
 
-TEST_CASE("buscheck reports that nothing is wrong or each fault with its place") {
+TEST_CASE("buscheck reports that nothing is wrong, or each fault with its source") {
     const Bench bench;
     const std::string log = " --log " + bench.path("run.log");
     const Outcome well = bench.call("buscheck" + log + bench.bus());

@@ -102,7 +102,7 @@ TEST_CASE("an ODrive's estimate that is lost between two heartbeats is not accep
     CHECK(replayed(arm, lost).positions > 350); // of 400
 }
 
-TEST_CASE("bus-off ends with a received frame and needs no report of the restart") {
+TEST_CASE("bus-off ends with a received frame, even without a report of the restart") {
     const Frames good = sound(icub());
     Frames off = with(good, error_frame(dfdyn::hal::error_class::bus_off));
     off.erase(off.begin() + std::ssize(off) / 2 + 1, off.begin() + std::ssize(off) / 2 + 400); // 0.1 s
@@ -143,8 +143,7 @@ TEST_CASE("a full scale that contradicts the description or an earlier one resca
     }
 }
 
-TEST_CASE(
-    "if only another set's full scales are known then no wrench is accepted unless that set is in use") {
+TEST_CASE("with another set's full scales, a wrench is accepted only if that set is in use") {
     const Frames numbered = changed(sound(icub()), [](Frame& frame) {
         frame.data[1] = static_cast<std::uint8_t>(frame.data[1] | (frame.id == 0x2D0 ? 0x10 : 0));
     });

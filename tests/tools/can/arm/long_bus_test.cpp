@@ -188,8 +188,7 @@ Outcome listen_to(std::int64_t rows, const std::string& trigger) {
     return listener.outcome;
 }
 
-/// Writes the rows of a live replay, and notes the memory when a tick is far beyond the first that is
-/// forgotten.
+/// Writes the rows of a live replay, and records the memory long after the first tick was dropped.
 class WatchedRows final : public TickSink {
   public:
     WatchedRows(const std::filesystem::path& path, const TrainedModel& model, std::int64_t full_after)
@@ -212,7 +211,7 @@ class WatchedRows final : public TickSink {
 };
 
 /// Replays the arm as `replay --can` does, keeping `kept` ticks. Checks that each tick is written and that
-/// the memory stays what it was.
+/// the memory is constant.
 void check_live_replay(std::int64_t rows, std::size_t kept, const std::filesystem::path& csv) {
     const TemporaryDirectory directory;
     const BusDescription description =
@@ -258,7 +257,7 @@ void check(const Outcome& outcome, std::int64_t rows) {
 } // namespace
 
 TEST_CASE(
-    "eight joints and a wrench at 1 kHz on a bus at 80 % load: every sample once and true and learned") {
+    "eight joints and a wrench at 1 kHz on a bus at 80 % load: every sample is unique, correct and learned") {
     check(listen_to(20'000, set), 20'000);
 }
 
@@ -271,7 +270,7 @@ TEST_CASE("on a loaded bus a timer's samples are regular and most wrenches are l
     CHECK(outcome.valid + outcome.not_new >= 19'980);
 }
 
-TEST_CASE("a live replay writes each tick and keeps the memory that it has when the first is forgotten") {
+TEST_CASE("a live replay writes each tick in constant memory after the first ticks are dropped") {
     const TemporaryDirectory directory;
     const auto csv = directory.path() / "out.csv";
     check_live_replay(12'000, 1'000, csv);
@@ -279,12 +278,12 @@ TEST_CASE("a live replay writes each tick and keeps the memory that it has when 
     CHECK(std::ranges::count(text, '\n') >= 12'000);
 }
 
-TEST_CASE("a live replay of an hour at 1 kHz keeps the memory of its first minutes", "[.long]") {
+TEST_CASE("a live replay of an hour at 1 kHz uses no more memory than its first minutes", "[.long]") {
     check_live_replay(3'600'000, 32'768, "/dev/null");
 }
 
-TEST_CASE("an hour of eight joints and a wrench at 1 kHz on a bus at 80 % load: every sample once and true "
-          "and learned in constant memory",
+TEST_CASE("an hour of eight joints and a wrench at 1 kHz at 80 % load: samples are unique, correct and "
+          "learned in constant memory",
           "[.long]") {
     constexpr std::int64_t rows = 3'600'000;
     const Outcome outcome = listen_to(rows, set);

@@ -12,7 +12,7 @@ using dfdyn::tools::BusSample;
 using dfdyn::tools::BusTraffic;
 using dfdyn::tools::BusTrigger;
 
-/// The frames of an arm, and those of another arm on the identifier of joint 1, later by a fraction of a
+/// The frames of an arm, and those of another arm on the identifier of joint 1, delayed by a fraction of a
 /// period.
 Frames with_two_senders(const BusDescription& description, double later, double from_s) {
     const std::uint32_t id = description.boards.front().board.encode({}).frame[0].id;
@@ -29,7 +29,7 @@ Frames with_two_senders(const BusDescription& description, double later, double 
 
 } // namespace
 
-TEST_CASE("from two senders of a joint's identifier no position is accepted with any family and trigger") {
+TEST_CASE("no position of two senders on one identifier is accepted, for any family and trigger") {
     for (const char* const name : {"icub_arm_strain", "ur5_cia402", "ur5_icub_2foc", "ur5_dbc", "odrive"}) {
         for (const BusTrigger trigger : {BusTrigger::timer, BusTrigger::set, BusTrigger::sync}) {
             BusDescription description =

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults that resemble others: each is found by its own rule with its rate, and no other rule reports a
-// finding.
+// Faults that resemble others: each is reported by its own rule with its rate, and by no other.
 #include "dfdyn/hal/device/icub_strain.hpp"
 
 #include "tests/tools/can/bus_check_support.hpp"
@@ -70,7 +69,7 @@ TEST_CASE("the loss of one in a hundred frames of a joint is found with its rate
     }
 }
 
-TEST_CASE("a clock that was set is found and no source is reported as slow or silent or stopped") {
+TEST_CASE("a clock step is reported and no source is reported as slow or silent or stopped") {
     for (const BusDescription& description : {icub(), drives(), described(odrive_and_ati)}) {
         const Frames good = sound(description);
         for (const double step_s : {3600.0, 2.0, -2.0, -3600.0}) {
@@ -85,7 +84,7 @@ TEST_CASE("a clock that was set is found and no source is reported as slow or si
     }
 }
 
-TEST_CASE("a single wrong time stamp is found and no source is reported as slow or silent or stopped") {
+TEST_CASE("a single wrong time stamp is reported and no source is reported as slow or silent or stopped") {
     for (const std::int64_t off_s : {100'000, 10, -10}) {
         Frames frames = sound(icub());
         frames[frames.size() / 2].stamp_ns += off_s * 1'000'000'000;
@@ -118,7 +117,7 @@ TEST_CASE("a constant effort of a moving joint is found") {
           Names{"effort_frozen"});
 }
 
-TEST_CASE("an encoder that freezes while its joint moves is found whether or not it recovers") {
+TEST_CASE("an encoder that freezes in motion is reported, with or without a recovery") {
     for (const double to_s : {3.0, 100.0}) {
         std::optional<Frame> last;
         const auto freeze = [&](Frame& frame) {
@@ -168,7 +167,7 @@ TEST_CASE("two senders of a joint's identifier are found and their positions giv
     }
 }
 
-TEST_CASE("an encoder that wraps after a turn is found and so is a single wrong position") {
+TEST_CASE("an encoder that wraps after a turn and a single wrong position are reported") {
     const auto moved_by = [](std::int32_t counts) {
         return [counts](Frame& frame) {
             const auto now = dfdyn::hal::load_little<std::int32_t>(frame.data.data());
@@ -184,7 +183,7 @@ TEST_CASE("an encoder that wraps after a turn is found and so is a single wrong 
                 })) == Names{"position_zeros"});
 }
 
-TEST_CASE("a drive that restarts while it sends is found and one that boots before it sends is not") {
+TEST_CASE("a drive that restarts while it sends is reported and one that boots before is not") {
     const Frames good = sound(drives());
     CHECK(rules(drives(), with(good, make_frame(0x701, 1))) == Names{"device_restarted"});
     Frames early = good;

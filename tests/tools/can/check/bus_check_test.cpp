@@ -158,7 +158,7 @@ TEST_CASE("a fault of the bus is found by its rule and no other") {
     CHECK(rules(bus, set_back).contains("clock_jumped"));
 }
 
-TEST_CASE("an interface that went down is found in addition to the frames that are missing") {
+TEST_CASE("an interface that went down is reported in addition to the missing frames") {
     const BusDescription bus = icub();
     const Frames good = sound(bus); // 4 s
     const std::uint64_t count = good.size();
@@ -176,7 +176,7 @@ TEST_CASE("an interface that went down is found in addition to the frames that a
     CHECK(rules_down(count / 2, count) == Names{"interface_down", "source_stopped"});
 }
 
-TEST_CASE("time stamps that repeat or run backward are found unless they are rare") {
+TEST_CASE("time stamps that repeat or run backward are reported unless they are rare") {
     const BusDescription bus = icub();
     const Frames good = sound(bus);
     const auto stamped = [&](int every, std::int64_t step_ns) {
@@ -197,7 +197,7 @@ TEST_CASE("time stamps that repeat or run backward are found unless they are rar
     CHECK_FALSE(stamped(100, 0).contains("time_not_increasing")); // in a quarter of the frames
 }
 
-TEST_CASE("the load is that of all frames relative to the bit rate") {
+TEST_CASE("the load is the bits of all frames relative to the bit rate") {
     BusDescription bus = icub();
     const Frames good = sound(bus);
     // per millisecond 2 x 135 bits of the joints and 2 x 115 of the sensor
@@ -273,7 +273,7 @@ TEST_CASE("a condition that a drive reports is found by its rule") {
                 })) == Names{"zeros"});
 }
 
-TEST_CASE("frames of more identifiers than fit into the memory are observed in bounded memory") {
+TEST_CASE("frames of more identifiers than are stored are observed in bounded memory") {
     const BusDescription bus = icub();
     Frames flood = sound(bus, 1);
     for (std::uint32_t id = 0; id < 20'000; ++id) {

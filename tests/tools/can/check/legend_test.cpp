@@ -86,7 +86,7 @@ void add_boards(const BusDescription& description, CampaignArm& arm) {
     arm.find_fields();
 }
 
-/// A described arm as the faults of the campaign change it.
+/// A described arm in the form that the campaign's faults change.
 CampaignArm campaign_arm(const BusDescription& description) {
     CampaignArm arm;
     arm.name = description.joint_family->name;
@@ -139,7 +139,7 @@ struct Run {
           arm(campaign_arm(described)), scene{Truth(engine), 100'000'000'000, &engine},
           good(arm.run(scene, 2000)) {}
 
-    /// Frames with a fault that shows in them; empty if these devices cannot have it.
+    /// Returns the frames with a detectable fault; empty if these devices cannot have it.
     Frames with(const Fault& fault) {
         constexpr int most_draws = 60;
         for (int i = 0; i < most_draws; ++i) {
@@ -159,14 +159,14 @@ struct Run {
   private:
     static std::int64_t nanoseconds(double time_s) { return std::llround(1e9 * time_s); }
 
-    /// An effort is reported that is frozen for 0.5 s.
+    /// Returns true if an effort that is frozen for 0.5 s is reported.
     static double length_s(const Fault& fault) {
         return fault.apply == freeze_effort ? 1.2 : fault.longest_s;
     }
 
-    /// Returns false for a draw that differs by too little from good frames: a fault that waited for motion
-    /// until less than 60 % of it was left, no stamp that is off by more than overtaken frames are, a clock
-    /// that was set by nearly whole periods, no position that is off by twice what a joint can move in one.
+    /// Returns false for a draw that differs too little from good frames. Examples: a fault that waited for
+    /// motion until less than 60 % of it was left; no stamp error beyond that of overtaken frames; a clock
+    /// step of almost whole periods; no position error beyond twice the motion in a period.
     bool shows(const Fault& fault, const FaultSite& site) const {
         constexpr std::array of_positions{corrupt_bits, zero_positions, restart_incremental, stick_bit};
         if (fault.apply == stamp_ahead || fault.apply == stamp_behind) {
@@ -185,7 +185,8 @@ struct Run {
         return site.end_ns - site.begin_ns >= nanoseconds(0.6 * length_s(fault));
     }
 
-    /// Returns true if a step of the clock is a quarter of a period or more from whole ones, of each source.
+    /// Returns true if a clock step differs by at least a quarter of a period from whole periods, for each
+    /// source.
     bool changes_phase(std::int64_t step_ns) const {
         const auto changes = [&](double rate_hz) {
             const double periods = 1e-9 * static_cast<double>(step_ns) * rate_hz;
@@ -195,7 +196,7 @@ struct Run {
                (!description.sensor || changes(description.output.rate_hz));
     }
 
-    /// Largest distance of a position from that of the same frame without the fault.
+    /// Returns the largest distance of a position from that of the same frame without the fault.
     double largest_change_rad(const Traffic& traffic) const {
         std::vector<dfdyn::tools::BusBoard> boards = description.boards;
         const auto key = [](const Sent& sent) { return std::tuple(sent.unit, sent.part, sent.cycle); };
@@ -216,7 +217,7 @@ struct Run {
         return largest;
     }
 
-    /// Largest distance between the positions of two frames, of those that both have.
+    /// Returns the largest distance between the positions of two frames, for positions in both.
     static double change_rad(std::vector<dfdyn::tools::BusBoard>& boards, const hal::Frame& good,
                              const hal::Frame& faulty) {
         const auto known = [](const auto& joint) {
@@ -237,7 +238,7 @@ struct Run {
     }
 };
 
-/// Returns true if the devices report an effort at the end of its numbers.
+/// Returns true if the devices report an effort at the end of its range.
 bool reports_saturation(const BusDescription& description) {
     dfdyn::tools::BusBoard board = description.boards.front();
     std::array<hal::JointValue, 2> beyond{};
@@ -251,8 +252,8 @@ bool reports_saturation(const BusDescription& description) {
     return reports;
 }
 
-/// Returns false for faults of efforts where the sensor measures the outputs, and for faults of single frames
-/// where several messages share each identifier.
+/// Returns false for faults of efforts if the sensor measures the outputs, and for faults of single frames if
+/// several messages share each identifier.
 bool matters(const BusDescription& description, const Fault& fault) {
     const bool of_effort = fault.apply == freeze_effort || fault.apply == saturate_effort;
     const bool of_frames = fault.apply == delay_frames || fault.apply == duplicate_frames ||
@@ -281,7 +282,7 @@ struct Drawn {
     double share() const { return draws > 0 ? static_cast<double>(right) / draws : 0; }
 };
 
-constexpr double least_share = 0.9; ///< of right draws
+constexpr double least_share = 0.9; ///< of valid draws
 
 Drawn draw(Run& run, const Fault& fault, const Expected& names) {
     constexpr int draws = 3;
@@ -312,7 +313,7 @@ void check_legend(const std::vector<BusDescription>& arms) {
             const Drawn drawn =
                 matters(description, fault) ? draw(run, fault, expected.at(fault.number)) : Drawn{};
             CAPTURE(fault.number, fault.name);
-            CHECK((drawn.right > 0 || drawn.draws == 0)); // no draws: these devices cannot have it
+            CHECK((drawn.right > 0 || drawn.draws == 0)); // without draws, these devices cannot have it
             pairs += drawn.draws > 0 ? 1 : 0;
             sums[fault.number].draws += drawn.draws;
             sums[fault.number].right += drawn.right;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What resembles a fault of another kind, or none, is not reported as one.
+// Signals that resemble a fault of another kind, or no fault, are not reported as such.
 #include "tests/tools/can/bus_check_support.hpp"
 #include "tests/tools/can/example_arms.hpp"
 #include "tools/can/check/position_jumps.hpp"
@@ -31,7 +31,7 @@ std::string evidence(const BusCheck& check, const std::string& rule) {
     return "";
 }
 
-TEST_CASE("buscheck gives a sensor with its own clock no finding on a bus with a SYNC") {
+TEST_CASE("buscheck reports nothing for a sensor with its own clock on a bus with a SYNC") {
     const BusDescription bus = drives_with_sensor();
     const BusCheck check(bus);
     CHECK(rules(bus, changed(sound(bus), [&](Frame& frame) {
@@ -42,7 +42,7 @@ TEST_CASE("buscheck gives a sensor with its own clock no finding on a bus with a
                 })) == Names{});
 }
 
-TEST_CASE("buscheck takes no answers for late that come just before and just after a SYNC") {
+TEST_CASE("buscheck does not report answers just before and after a SYNC as late") {
     dfdyn::tools::SyncAnswers answers;
     for (int i = 0; i < 200; ++i) {
         answers.take(i % 2 == 0 ? 100'000 : 1'900'000, 2e6);
@@ -54,7 +54,7 @@ TEST_CASE("buscheck takes no answers for late that come just before and just aft
     CHECK(answers.late() == 20);
 }
 
-TEST_CASE("buscheck prints the figures of frames that come late") {
+TEST_CASE("buscheck prints the number of late frames") {
     const BusDescription bus = described(foc_and_robotous);
     int count = 0;
     const BusCheck check = checked(bus, changed(sound(bus), [&](Frame& frame) {
@@ -76,7 +76,7 @@ Frames with_positions(const Frames& frames, const std::function<std::int32_t(dou
 
 constexpr std::int32_t turn_counts = 1'048'576; ///< of the encoders of `drives`
 
-TEST_CASE("buscheck reports a frozen encoder although a few frames come twice") {
+TEST_CASE("buscheck reports a frozen encoder despite a few duplicated frames") {
     const BusDescription bus = drives_with_sensor();
     std::optional<std::int32_t> last;
     Frames frames = with_positions(sound(bus, 14), [&](double time_s, std::int32_t now) {
@@ -95,7 +95,7 @@ TEST_CASE("buscheck reports a frozen encoder although a few frames come twice") 
     CHECK(rules(bus, frames) == Names{"encoder_frozen"});
 }
 
-TEST_CASE("buscheck tells an unsigned encoder that wraps from one that lost its zero") {
+TEST_CASE("buscheck distinguishes an unsigned encoder that wraps from one that lost its zero") {
     const BusDescription bus = drives();
     const auto wrapping = [](double time_s, std::int32_t) {
         return static_cast<std::int32_t>(-40'000 + std::llround(20'000 * time_s) + turn_counts) % turn_counts;
@@ -103,7 +103,7 @@ TEST_CASE("buscheck tells an unsigned encoder that wraps from one that lost its 
     CHECK(rules(bus, with_positions(sound(bus), wrapping)) == Names{"position_wrap"});
 }
 
-TEST_CASE("buscheck tells a joint at rest where its encoder wraps from one with flipped bits") {
+TEST_CASE("buscheck distinguishes a joint at rest at the wrap of its encoder from flipped bits") {
     const BusDescription bus = drives();
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> noise(0, 30);
@@ -115,7 +115,7 @@ TEST_CASE("buscheck tells a joint at rest where its encoder wraps from one with 
     CHECK_THAT(evidence(check, "position_wrap"), ContainsSubstring("at least 64 of "));
 }
 
-TEST_CASE("buscheck takes a foreign device with 29-bit identifiers for no part of the arm") {
+TEST_CASE("buscheck does not assign a foreign device with 29-bit identifiers to the arm") {
     const BusDescription bus = drives();
     Frames frames = sound(bus);
     const std::size_t count = frames.size();
@@ -135,7 +135,7 @@ TEST_CASE("buscheck takes a foreign device with 29-bit identifiers for no part o
                 })) == Names{"lost_frames", "rejected_frames"});
 }
 
-TEST_CASE("buscheck finds lost frames of a joint although another source has wrong time stamps") {
+TEST_CASE("buscheck reports lost frames of a joint despite wrong time stamps of another source") {
     const BusDescription bus = drives_with_sensor();
     const Frames good = sound(bus);
     int lost = 0, strays = 0;
@@ -148,7 +148,7 @@ TEST_CASE("buscheck finds lost frames of a joint although another source has wro
     CHECK(rules(bus, frames) == Names{"lost_frames", "clock_jumped"});
 }
 
-TEST_CASE("buscheck finds late frames of a joint although other frames were read in another order") {
+TEST_CASE("buscheck reports late frames of a joint despite other frames read out of order") {
     const BusDescription bus = described(foc_and_robotous);
     int late = 0;
     Frames frames = changed(sound(bus), [&](Frame& frame) {
@@ -164,7 +164,7 @@ TEST_CASE("buscheck finds late frames of a joint although other frames were read
     CHECK(rules(bus, frames) == Names{"frames_overtaken", "late_frames"});
 }
 
-TEST_CASE("buscheck takes two wrong stamps in a row for no silence") {
+TEST_CASE("buscheck does not report two consecutive wrong stamps as a silence") {
     const BusDescription bus = drives();
     Frames frames = sound(bus);
     frames[frames.size() / 2].stamp_ns += 40'000'000;
@@ -172,7 +172,7 @@ TEST_CASE("buscheck takes two wrong stamps in a row for no silence") {
     CHECK(rules(bus, frames) == Names{"clock_jumped"});
 }
 
-TEST_CASE("buscheck finds the pause of a source that has many wrong time stamps") {
+TEST_CASE("buscheck reports the pause of a source with many wrong time stamps") {
     const BusDescription bus = drives();
     int number = 0;
     Frames frames = without(sound(bus), [&](const Frame& frame) {
@@ -188,7 +188,7 @@ TEST_CASE("buscheck finds the pause of a source that has many wrong time stamps"
     CHECK(rules(bus, frames) == Names{"clock_jumped", "gaps"});
 }
 
-TEST_CASE("buscheck takes flipped bits of a joint at rest for no frozen encoder") {
+TEST_CASE("buscheck does not report flipped bits of a joint at rest as a frozen encoder") {
     const BusDescription bus = drives();
     int number = 0;
     const Frames frames = with_positions(
@@ -196,7 +196,7 @@ TEST_CASE("buscheck takes flipped bits of a joint at rest for no frozen encoder"
     CHECK(rules(bus, frames) == Names{"bits_flipped"});
 }
 
-TEST_CASE("buscheck finds a babbling node whenever it begins") {
+TEST_CASE("buscheck reports a babbling node, whenever it begins") {
     const BusDescription bus = drives();
     for (const double begin_s : {1.0, 1.05, 1.1, 1.15}) {
         CAPTURE(begin_s);

@@ -237,7 +237,7 @@ TEST_CASE("a sensor in two variants of one message is paired and limited and its
     CHECK(sensor.wrench(moved[0], moved[1]).raw != raw); // the raw values differ, so the sensor is not frozen
 }
 
-TEST_CASE("a joint in nested multiplexed pages of a message is decoded only there") {
+TEST_CASE("a joint in nested multiplexed pages of a message is decoded in these pages only") {
     const std::string dbc = "BO_ 288 Drive: 8 A\n"
                             " SG_ Page M : 0|8@1+ (1,0) [0|0] \"\" B\n"
                             " SG_ Axis m2M : 8|8@1+ (1,0) [0|0] \"\" B\n"

@@ -73,7 +73,7 @@ TEST_CASE("the documentation's tables of families equal the catalogue") {
     CHECK(rows == sensors);
 }
 
-TEST_CASE("the page of devices is what the families' descriptors say") {
+TEST_CASE("docs/reference/devices.md equals the text from the families' descriptors") {
     CHECK(read_file(project / "docs/reference/devices.md") == device_page());
     for (const JointFamily& family : joint_families()) {
         CAPTURE(family.name);
@@ -107,7 +107,7 @@ TEST_CASE("arms of every family: buscheck finds no fault in the log that convert
     }
 }
 
-TEST_CASE("arms of every family: a torque command is received as it was sent") {
+TEST_CASE("arms of every family: a torque command is decoded as it was encoded") {
     for (const BusDescription& arm : example_arms()) {
         CAPTURE(arm.joint_family->name);
         TorqueFrames commands(arm);

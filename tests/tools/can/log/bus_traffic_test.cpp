@@ -79,14 +79,14 @@ TEST_CASE("frames have their worst-case bits: 55 + 10 per byte and 25 more with 
 TEST_CASE("a CAN FD frame has its data at the data bit rate if it switches") {
     Frame frame = frame_of(1, 8);
     frame.fd = true;
-    // ISO 11898-1: 17 bits with 4 stuff bits, 13 at the end; 69 with 17, stuff count 4, check sum 17 with 6
-    // fixed ones
+    // ISO 11898-1: 17 bits with 4 stuff bits, 13 at the end; 69 with 17, stuff count 4, CRC of 17 with 6
+    // fixed stuff bits
     const double arbitration = 17 + 4 + 13;
     const double data = 69 + 17 + 4 + 17 + 6;
     CHECK(frame_bits(frame, 5) == Approx(arbitration + data));
     frame.bit_rate_switch = true;
     CHECK(frame_bits(frame, 5) == Approx(arbitration + data / 5));
-    frame.length = 64; // a check sum of 21 bits
+    frame.length = 64; // a CRC of 21 bits
     CHECK(frame_bits(frame, 5) == Approx(arbitration + (517 + 129 + 4 + 21 + 7) / 5.0));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The logs in tests/data/can/devices, which device_logs.py wrote from the protocols' documents alone.
+// Logs in tests/data/can/devices, written by device_logs.py from the protocols' documents only.
 #include "dfdyn/hal/replay_bus.hpp"
 #include "tests/tools/can/bus_check_support.hpp"
 #include "tools/can/arm/bus_sampler.hpp"
@@ -22,12 +22,12 @@ const std::string folder = bus_folder + "devices/";
 constexpr double pi = std::numbers::pi;
 constexpr double start_s = 1'700'000'000;
 
-/// What joint `k` (from 1) does, as device_logs.py has it.
+/// Motion of joint `k` (from 1), as in device_logs.py.
 double angle(int k, double t) { return 0.3 * k - 0.5 + 0.4 * std::sin(pi * t + k); }
 double speed(int k, double t) { return 0.4 * pi * std::cos(pi * t + k); }
 double effort(int k, double t) { return (0.5 + 0.1 * k) * std::cos(0.5 * pi * t + k); }
 
-/// A log, and the largest error of its values: a count of the coarsest device.
+/// A log, and the largest error of its values: a count of the device with the lowest resolution.
 struct DeviceLog {
     const char* name;
     const char* family;
@@ -65,14 +65,14 @@ const DeviceLog& log_named(std::string_view name) { return *std::ranges::find(lo
 
 double time_of(const hal::Frame& frame) { return 1e-9 * static_cast<double>(frame.stamp_ns) - start_s; }
 
-/// Number of values compared, and of those that are not the truth.
+/// Number of compared values, and of wrong ones.
 struct Compared {
     int positions = 0, velocities = 0, efforts = 0, wrong = 0, refused = 0;
 };
 
 Compared compare(std::vector<BusBoard> boards, const Frames& frames, const DeviceLog& log) {
     Compared compared;
-    constexpr double tolerance = 1.01; // counts; makers cut codes off instead of rounding
+    constexpr double tolerance = 1.01; // counts; makers truncate codes instead of rounding
     for (const hal::Frame& frame : frames) {
         for (BusBoard& board : boards) {
             const hal::Decoded decoded = board.board.decode(frame);
@@ -102,7 +102,7 @@ Compared compare(std::vector<BusBoard> boards, const Frames& frames, const Devic
     return compared;
 }
 
-TEST_CASE("motors that an independent encoder describes are decoded to a count") {
+TEST_CASE("logs of motors by an independent encoder are decoded to within a count") {
     for (const DeviceLog& log : logs) {
         CAPTURE(log.name);
         const Compared compared = compare(description_of(log).boards, frames_of(log.name), log);
@@ -114,11 +114,11 @@ TEST_CASE("motors that an independent encoder describes are decoded to a count")
     }
 }
 
-TEST_CASE("a replay of these logs has a sample per period with the positions of its instant") {
+TEST_CASE("a replay of these logs has a sample per period with the positions at its time") {
     for (const DeviceLog& log : logs) {
         CAPTURE(log.name);
         int valid = 0;
-        int outputs = 0; // slow efforts repeat their coarse codes, which is taken for frozen in places
+        int outputs = 0; // slow efforts repeat their coarse codes, and are partly taken for frozen
         double largest_error = 0;
         BusSampler sampler(description_of(log), [&](const BusSample& sample) {
             valid += sample.valid() ? 1 : 0;
@@ -140,7 +140,7 @@ TEST_CASE("a replay of these logs has a sample per period with the positions of 
     }
 }
 
-TEST_CASE("a bus that nobody described is recognised and its draft decodes it") {
+TEST_CASE("a bus without a description is recognised and its draft decodes it") {
     for (const DeviceLog& log : logs) {
         CAPTURE(log.name);
         const Frames frames = frames_of(log.name);
@@ -153,7 +153,7 @@ TEST_CASE("a bus that nobody described is recognised and its draft decodes it") 
         CHECK(draft.joint_count == log.joints);
         CHECK(draft.joints.rate_hz == Approx(200));
         DeviceLog coarse = log;
-        coarse.effort_step = 1e9;             // torque maxima may be unsure
+        coarse.effort_step = 1e9;             // torque maxima may be uncertain
         coarse.speed_step += 0.04 * 0.4 * pi; // velocity maxima and gears are measured
         const Compared compared = compare(draft.boards, frames, coarse);
         CHECK(compared.positions == 300 * log.joints);
@@ -164,7 +164,7 @@ TEST_CASE("a bus that nobody described is recognised and its draft decodes it") 
     }
 }
 
-TEST_CASE("buscheck finds nothing wrong on these buses as they are described") {
+TEST_CASE("buscheck has no finding on these buses with their descriptions") {
     for (const DeviceLog& log : logs) {
         CAPTURE(log.name);
         const Names found = rules(description_of(log), frames_of(log.name));
@@ -173,7 +173,7 @@ TEST_CASE("buscheck finds nothing wrong on these buses as they are described") {
     }
 }
 
-/// The rules of the findings on a bus that nobody described.
+/// Returns the rules of the findings on a bus without a description.
 Names rules_without_description(const Frames& frames) {
     Names names;
     for (const BusFinding& finding : recognise_bus(frames).findings) {
@@ -198,7 +198,7 @@ void set_velocity_code(Frame& frame, unsigned code) {
     frame.data[4] = static_cast<std::uint8_t>((code & 15U) << 4U | (frame.data[4] & 15U));
 }
 
-TEST_CASE("boards with other protocols are recognised, too, without a draft where it would be a guess") {
+TEST_CASE("boards with other protocols are recognised, without a draft if it is uncertain") {
     const auto recognised = [](const BusDescription& arm) {
         const RecognisedBus bus = recognise_bus(sound(arm, 1));
         return bus.families.size() == 1 && bus.families[0].name == arm.joint_family->name
@@ -212,7 +212,7 @@ TEST_CASE("boards with other protocols are recognised, too, without a draft wher
     CHECK_FALSE(recognise_bus(sound(drives(), 1)).draft);
 }
 
-TEST_CASE("faults of motors are found on a bus that nobody described") {
+TEST_CASE("faults of motors are reported on a bus without a description") {
     CHECK(rules_without_description(frames_of("damiao")) == Names{});
     CHECK(rules_without_description(damiao_with([](Frame& frame) {
               set_velocity_code(frame, 4095 - velocity_code(frame)); // the other direction
@@ -252,7 +252,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a program that reads a motor by clearing its faults is found") {
+TEST_CASE("a program that polls a motor by clearing its faults is reported") {
     Frames frames = frames_of("robstride_mit");
     const std::size_t sent = frames.size();
     for (std::size_t i = 0; i < sent; i += 30) {
