@@ -282,7 +282,7 @@ struct Drawn {
     double share() const { return draws > 0 ? static_cast<double>(right) / draws : 0; }
 };
 
-constexpr double least_share = 0.9; ///< of valid draws
+constexpr double least_share = 0.9; ///< right draws of a fault over all families
 
 Drawn draw(Run& run, const Fault& fault, const Expected& names) {
     constexpr int draws = 3;
