@@ -61,11 +61,11 @@ class Sampler {
         if (!started_) {
             start(frame.stamp_ns);
         }
-        settle(arm, frame.stamp_ns, on_sample);
+        resolve_held(arm, frame.stamp_ns, on_sample);
         if (holding_ > 0 || clock_.leads(frame.stamp_ns)) {
             held_[holding_++] = {frame, state, counters};
         } else {
-            put_through(arm, frame, state, counters, on_sample);
+            process(arm, frame, state, counters, on_sample);
         }
     }
 
@@ -77,7 +77,7 @@ class Sampler {
         while (past < holding_ && wrapping_difference(held_[past].frame.stamp_ns, stamp_ns) <= 0) {
             ++past;
         }
-        let_go(arm, past, on_sample);
+        process_held(arm, past, on_sample);
         const std::int64_t end_ns = std::min(clock_.time_of(stamp_ns) + 1, now_ns_ + longest_silence_ns);
         assemble_before(arm, end_ns, on_sample);
         release(arm, end_ns, on_sample);
@@ -86,7 +86,7 @@ class Sampler {
     /// Declares the end of the frames. Waiting samples are assembled without the missing values.
     template <class OnSample>
     void finish(Arm& arm, OnSample&& on_sample) {
-        let_go(arm, holding_, on_sample);
+        process_held(arm, holding_, on_sample);
         for (; waiting_ > 0; --waiting_, first_ = next(first_)) {
             on_sample(arm.assemble(instant_[first_], now_ns_), now_ns_);
         }
@@ -118,7 +118,7 @@ class Sampler {
 
     /// Decides by the stamp of the next frame which of the held frames are dropped or taken.
     template <class OnSample>
-    void settle(Arm& arm, std::int64_t stamp_ns, OnSample& on_sample) {
+    void resolve_held(Arm& arm, std::int64_t stamp_ns, OnSample& on_sample) {
         if (holding_ == 0) {
             return;
         }
@@ -131,27 +131,27 @@ class Sampler {
             ++strays_;
         }
         if (returns || further || holding_ == most_strays) {
-            let_go(arm, holding_, on_sample);
+            process_held(arm, holding_, on_sample);
         }
     }
 
     /// Takes the first `count` held frames.
     template <class OnSample>
-    void let_go(Arm& arm, std::size_t count, OnSample& on_sample) {
+    void process_held(Arm& arm, std::size_t count, OnSample& on_sample) {
         for (std::size_t i = 0; i < count; ++i) {
-            put_through(arm, held_[i].frame, held_[i].state, held_[i].counters, on_sample);
+            process(arm, held_[i].frame, held_[i].state, held_[i].counters, on_sample);
         }
         std::move(held_.begin() + count, held_.begin() + holding_, held_.begin());
         holding_ -= count;
     }
 
     template <class OnSample>
-    void put_through(Arm& arm, const Frame& frame, BusState state, const BusCounters& counters,
-                     OnSample& on_sample) {
+    void process(Arm& arm, const Frame& frame, BusState state, const BusCounters& counters,
+                 OnSample& on_sample) {
         const std::int64_t time_ns = clock_.due_ns(frame.stamp_ns);
         assemble_before(arm, std::min(time_ns, now_ns_ + longest_silence_ns), on_sample);
         now_ns_ = time_ns;
-        leave_out_before(now_ns_);
+        skip_before(now_ns_);
         release(arm, now_ns_, on_sample);
         arm.update(state, counters);
         const std::optional<std::int64_t> moment = arm.take(frame, now_ns_);
@@ -192,7 +192,7 @@ class Sampler {
     }
 
     /// Skips the samples that were due during a long silence.
-    constexpr void leave_out_before(std::int64_t time_ns) noexcept {
+    constexpr void skip_before(std::int64_t time_ns) noexcept {
         if (due_ns_ < time_ns) { // can exceed int64 for stamps of opposite signs
             const auto late_ns = static_cast<std::uint64_t>(wrapping_difference(time_ns, due_ns_));
             const auto past_ns =

@@ -52,7 +52,7 @@ class ClockStepWatch {
             const std::int64_t more_ns = one.step_ns - least.value_or(0);
             const std::int64_t periods = one.heard ? (more_ns + one.period_ns / 2) / one.period_ns : 0;
             if (one.heard &&
-                (periods > most_lost || distance(more_ns, periods * one.period_ns) > tolerance_ns)) {
+                (periods > max_lost_frames || distance(more_ns, periods * one.period_ns) > tolerance_ns)) {
                 return std::nullopt;
             }
         }
@@ -70,7 +70,7 @@ class ClockStepWatch {
 
   private:
     static constexpr std::int64_t memory_ns = 200'000'000;
-    static constexpr int most_lost = 3; ///< lost frames of a source
+    static constexpr int max_lost_frames = 3; ///< lost frames of a source
 
     struct Source {
         std::int64_t stamp_ns = 0; ///< stamp of its last frame

@@ -43,7 +43,7 @@ class SyncStep {
         if (synchronised_) {
             explain_late_answer(stamp_ns - sync_ns_);
             learn_period(stamp_ns - sync_ns_);
-            missing_ += answered_ && answers_ == 0 && missing_ < most_missing ? 1 : 0;
+            missing_ += answered_ && answers_ == 0 && missing_ < max_missing ? 1 : 0;
         }
         synchronised_ = true;
         sync_ns_ = stamp_ns;
@@ -94,8 +94,8 @@ class SyncStep {
     [[nodiscard]] constexpr std::int64_t sync_ns() const noexcept { return sync_ns_; }
 
   private:
-    static constexpr int great_many = 200;
-    static constexpr int most_missing = 1000;
+    static constexpr int answers_to_recover = 200;
+    static constexpr int max_missing = 1000;
 
     [[nodiscard]] static constexpr std::int64_t distance(std::int64_t a, std::int64_t b) noexcept {
         return a < b ? b - a : a - b;
@@ -106,7 +106,7 @@ class SyncStep {
         behind_ = behind_ || (missing_ > 0 && !usual);
         if (behind_) {
             usual_answers_ = usual ? usual_answers_ + 1 : 0;
-            behind_ = usual_answers_ < great_many;
+            behind_ = usual_answers_ < answers_to_recover;
             return false;
         }
         usual_answers_ = 0;
@@ -132,26 +132,28 @@ class SyncStep {
     /// Tracks the usual time from SYNC to answer. A different time is adopted only after 500 answers, because
     /// on a loaded bus answers are temporarily late.
     constexpr void learn_usual_time(std::int64_t after_ns, bool usual) noexcept {
-        constexpr int very_many = 500;
+        constexpr int answers_to_adapt = 500;
         earliest_ns_ = usual_ns_ < 0 ? after_ns : std::min(earliest_ns_, after_ns);
-        unusual_ = usual ? 0 : std::min(unusual_ + 1, very_many);
+        unusual_ = usual ? 0 : std::min(unusual_ + 1, answers_to_adapt);
         if (usual) {
             usual_ns_ += (after_ns - usual_ns_) / 64; // slower than the delays of a bus that fills
-        } else if (usual_ns_ < 0 || unusual_ == very_many) {
+        } else if (usual_ns_ < 0 || unusual_ == answers_to_adapt) {
             usual_ns_ = earliest_ns_ = after_ns;
         }
     }
 
     /// Tracks the period. A change of more than a quarter is adopted after eight in a row.
     constexpr void learn_period(std::int64_t interval_ns) noexcept {
-        constexpr int patience = 8;
-        if (period_ns_ > 0 && distance(interval_ns, period_ns_) > period_ns_ / 4 && others_ < patience) {
-            ++others_;
+        constexpr int intervals_to_adapt = 8;
+        if (period_ns_ > 0 && distance(interval_ns, period_ns_) > period_ns_ / 4 &&
+            unusual_intervals_ < intervals_to_adapt) {
+            ++unusual_intervals_;
             return;
         }
-        period_ns_ = others_ == patience || period_ns_ == 0 ? interval_ns
-                                                            : period_ns_ + (interval_ns - period_ns_) / 8;
-        others_ = 0;
+        period_ns_ = unusual_intervals_ == intervals_to_adapt || period_ns_ == 0
+                         ? interval_ns
+                         : period_ns_ + (interval_ns - period_ns_) / 8;
+        unusual_intervals_ = 0;
     }
 
     std::int64_t sync_ns_ = 0;
@@ -160,7 +162,7 @@ class SyncStep {
     std::int64_t earliest_ns_ = 0; ///< the shortest of those times
     std::int64_t late_ns_ = -1;    ///< time of a single too late answer since the last SYNC; -1: none
     int unusual_ = 0;              ///< answers in a row that were not at the usual time
-    int others_ = 0;               ///< intervals in a row that differed from the period
+    int unusual_intervals_ = 0;    ///< intervals in a row that differed from the period
     int answers_ = 0;              ///< since the last SYNC
     bool synchronised_ = false;
     bool answered_ = false;

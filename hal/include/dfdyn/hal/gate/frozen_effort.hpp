@@ -41,8 +41,8 @@ class FrozenEffortGate {
   private:
     static constexpr double motion_of_a_run_rad = 5e-3;
     static constexpr double motion_of_a_value_rad = 2e-4;
-    static constexpr int enough = 40; ///< runs of the moving joint until the limit is adapted
-    static constexpr int slack = 6;   ///< periods, beyond twice the longest run
+    static constexpr int runs_to_learn = 40; ///< runs of the moving joint until the limit is adapted
+    static constexpr int slack = 6;          ///< periods, beyond twice the longest run
     /// A silence counts at most this many periods. Then value, silence and equal value are no frozen effort,
     /// even of a device that never repeated one: 1 + 6 < 2 * 1 + 6.
     static constexpr int longest_silence = slack;
@@ -62,12 +62,12 @@ class FrozenEffortGate {
         if (run_ > 0) {
             smallest_change_ = smallest_change_ > 0 ? std::min(smallest_change_, change) : change;
             const bool moved = magnitude(position_rad - begin_rad_) > motion_of_a_value_rad;
-            const bool learning = learned_ < enough && run_ < limit_;
+            const bool learning = learned_ < runs_to_learn && run_ < limit_;
             const bool smooth = learning || !frozen_ || change <= 3 * smallest_change_;
             longest_ = moved && smooth ? std::max(longest_, run_) : longest_;
-            learned_ = std::min(learned_ + (moved ? 1 : 0), enough);
+            learned_ = std::min(learned_ + (moved ? 1 : 0), runs_to_learn);
             longest_at_any_speed_ = smooth ? std::max(longest_at_any_speed_, run_) : longest_at_any_speed_;
-            learned_at_any_speed_ = std::min(learned_at_any_speed_ + 1, enough);
+            learned_at_any_speed_ = std::min(learned_at_any_speed_ + 1, runs_to_learn);
         }
         run_ = 0;
         last_ = effort;
@@ -76,8 +76,8 @@ class FrozenEffortGate {
     }
 
     [[nodiscard]] constexpr int limit() const noexcept {
-        const int longest = learned_ < enough ? longest_at_any_speed_ : longest_;
-        return learned_at_any_speed_ < enough ? limit_ : std::min(limit_, 2 * longest + slack);
+        const int longest = learned_ < runs_to_learn ? longest_at_any_speed_ : longest_;
+        return learned_at_any_speed_ < runs_to_learn ? limit_ : std::min(limit_, 2 * longest + slack);
     }
 
     int limit_;

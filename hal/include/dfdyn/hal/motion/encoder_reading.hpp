@@ -27,8 +27,8 @@ struct EncoderReading {
 /// is not finite, or that of a device that does not wrap. O(1).
 constexpr void unwrap_near(EncoderReading& reading, double about_rad) noexcept {
     const double turn = reading.wrap_rad;
-    constexpr double most_turns = 1e15; // beyond it a double does not resolve a turn
-    if (turn > 0 && magnitude(reading.position_rad) < most_turns * turn) {
+    constexpr double max_turns = 1e15; // beyond it a double does not resolve a turn
+    if (turn > 0 && magnitude(reading.position_rad) < max_turns * turn) {
         const double turns = (about_rad - reading.position_rad) / turn;
         reading.position_rad +=
             turn * static_cast<double>(static_cast<std::int64_t>(turns + (turns < 0 ? -0.5 : 0.5)));

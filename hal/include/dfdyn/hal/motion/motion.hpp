@@ -237,12 +237,12 @@ class MotionGate : private MotionEvidence {
         end_loss();
         forget_unfit();
         disturbed_ = false;
-        return settled(reading);
+        return checked(reading);
     }
 
     /// Rejects a reading if two of the last eight were inconsistent, because the others may be the wrong
     /// ones.
-    constexpr Verdict settled(const EncoderReading& reading) noexcept {
+    constexpr Verdict checked(const EncoderReading& reading) noexcept {
         return std::popcount(off_) < 2 ? Verdict{Reason::ok, reading.position_rad}
                                        : refuse(reading, Reason::position_jump);
     }
@@ -286,8 +286,8 @@ class MotionGate : private MotionEvidence {
         if (suspected_ && run().still()) {
             return refuse(reading, repeats ? Reason::position_frozen : reason);
         }
-        const bool stands_at_zero = run().zeros() >= config_.qualification.zero_readings;
-        if (!enough && !stands_at_zero) {
+        const bool at_rest_at_zero = run().zeros() >= config_.qualification.zero_readings;
+        if (!enough && !at_rest_at_zero) {
             return refuse(reading, reason);
         }
         if (!trusted_.empty() &&
@@ -295,14 +295,14 @@ class MotionGate : private MotionEvidence {
              stays_elsewhere() || away_.away())) {
             return lose(reading);
         }
-        return run().readings() >= needed_readings() || stands_at_zero ? settle(reading)
-                                                                       : refuse(reading, reason);
+        return run().readings() >= needed_readings() || at_rest_at_zero ? trust_run(reading)
+                                                                        : refuse(reading, reason);
     }
 
     /// Trusts the run that ends with this reading.
-    constexpr Verdict settle(const EncoderReading& reading) noexcept {
+    constexpr Verdict trust_run(const EncoderReading& reading) noexcept {
         believe(MotionRun(run()));
-        return settled(reading);
+        return checked(reading);
     }
 
     /// Rejects the run that ends with this reading, and its continuation.

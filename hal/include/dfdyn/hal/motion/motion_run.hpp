@@ -74,10 +74,10 @@ class MotionRun {
             moving_ = line_;
             moved_ns_ = reading.stamp_ns;
         }
-        changes_ = std::min(changes_ + (moved && count_ > 0 ? 1 : 0), most);
-        count_ = std::min(count_ + 1, most);
-        zeros_ = reading.zero ? std::min(zeros_ + 1, most) : 0;
-        readings_ = std::min(readings_ + (reading.zero ? 0 : 1), most);
+        changes_ = std::min(changes_ + (moved && count_ > 0 ? 1 : 0), max_count);
+        count_ = std::min(count_ + 1, max_count);
+        zeros_ = reading.zero ? std::min(zeros_ + 1, max_count) : 0;
+        readings_ = std::min(readings_ + (reading.zero ? 0 : 1), max_count);
     }
 
     /// Adds a reading after a silence, during which the motion may have changed.
@@ -138,7 +138,7 @@ class MotionRun {
     [[nodiscard]] constexpr int zeros() const noexcept { return zeros_; }
 
   private:
-    static constexpr int most = 1'000'000;
+    static constexpr int max_count = 1'000'000;
     static constexpr int enough_advances = 10;
     static constexpr int enough_changes = 5;
 
