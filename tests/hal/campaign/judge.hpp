@@ -144,9 +144,9 @@ class Judge {
                                std::clamp(blind.blind_ns, bus_period, bus_max_age), blind.span_ns);
     }
 
-    /// Returns true if the reading's run begins after more than `max_age` without a correct reading, at a
-    /// position that the limits allow, and not at the device's zero. A receiver takes it for a joint that
-    /// moved there, even if its error grows later.
+    /// Returns true if the reading's run begins after more than `max_age` without a correct reading, within
+    /// the limits and not at the device's zero. A receiver assumes that the joint moved there, even if the
+    /// error of the run grows later.
     [[nodiscard]] bool after_silence(std::size_t joint, const JointSight::Shown& shown) const {
         const JointSight::Run& run = sight_[joint].run(shown.run);
         const double reach = reach_rad(joint, run.velocity, run.blind_ns, 3 * bus_period);

@@ -22,8 +22,8 @@ class JointSight {
   public:
     struct Run {
         std::int64_t begin_ns = 0; ///< true time
-        /// Time from the last correct reading to the start, by the clock that gives more, plus the frames
-        /// that are omitted after the clock was set back.
+        /// Time from the last correct reading to the start: the larger of true time and stamps. Includes the
+        /// frames that are dropped after the clock was set back.
         std::int64_t blind_ns = 0;
         double error_rad = 0;     ///< error of the reading at the start
         double from_zero_rad = 0; ///< distance of that reading from the device's zero

@@ -196,8 +196,8 @@ class ArmOnBus {
                  .frozen_limit = frozen_limit}};
     }
 
-    /// Checks that a sample is true at its time, within the resolution of the sensors and the motion while a
-    /// value is held, and that an invalid output is not learned.
+    /// Checks that a sample is correct at its time, within the sensors' resolution and the motion during a
+    /// hold. Checks that an invalid output is not learned.
     void check(const Tick& tick) const {
         const auto& [sample, report] = tick.assembled;
         if (!tick.assembled.valid()) {

@@ -60,9 +60,8 @@ class Track {
           qualification_(config.qualification) {}
 
     /// Takes a reading. `zero`: its raw values are all 0. A reading with a reason is stored without a value.
-    /// A reading that is not later than the last is counted and otherwise ignored. If its value differs and
-    /// its stamp is the same, the last one becomes invalid too, because one of the two has a wrong stamp or
-    /// sender.
+    /// A reading that is not later than the last is counted and otherwise ignored. Two different values with
+    /// one stamp are both invalid, because one has a wrong stamp or sender.
     constexpr void push(std::int64_t stamp_ns, Reason reason, const Values& value, bool zero) noexcept {
         Measurement<values> entry{stamp_ns - latency_ns_, reason, value};
         if (overtaken(entry)) {

@@ -32,10 +32,9 @@ enum class RmdPosition : std::uint8_t {
 ///   (°).
 ///   - 0x9A: errors u16 at byte 6, 0: none.
 ///
-/// V2 drivers answer on 0x140 + motor. Their current has 33/2048 A per count, 0x9C contains an encoder of
-/// 16384 counts per turn instead of the angle, and the angle of 0x92 has seven bytes. Requests come on the
-/// same identifier. A request has zeros after its command; a command has 0 where its answer has the
-/// temperature.
+/// V2 drivers answer on 0x140 + motor, with a current of 33/2048 A per count. Their 0x9C contains an encoder
+/// of 16384 counts per turn instead of the angle. The angle of 0x92 has seven bytes. Requests come on the
+/// same identifier: they have zeros after the command. A command has 0 where its answer has the temperature.
 ///
 /// An angle of 1 ° is too coarse for learning; 0x92 or 0x60 is needed. Values carry `device_fault` after an
 /// answer 0x9A with errors, until two in a row without errors. A flipped bit can turn 0x92, the answer with

@@ -18,17 +18,16 @@ namespace dfdyn::hal {
 ///   stale, corrupted, zero, late or from another sender is rejected, and the next correct one is trusted.
 /// - After a start, silence or jump, `qualification.readings` consistent readings are required, which must
 ///   connect with the last trusted position. After a jump, the velocity may differ (impact) but not the
-///   position. After a silence, the motion limits apply. Twenty times as many readings are required after
-///   readings that contradict each other, or after a clock step to a position that the motion does not
-///   explain.
-/// - A run that begins at the device's zero, without a motion to there, comes from an encoder that counts
-///   from where it was switched on (ZeroWatch). It is `position_lost` until the program restarts. Exception:
-///   a run that reverses the jump before it (a stuck bit).
+///   position. After a silence, the motion limits apply. Twenty times as many are required after
+///   contradictory readings, or after a clock step to an unexplained position.
+/// - A run from the device's zero, without a motion to there, comes from an encoder that counts from where it
+///   was switched on (ZeroWatch). It is `position_lost` until the program restarts. Exception: a run that
+///   reverses the jump before it (a stuck bit).
 /// - Any other run that does not connect is rejected while it continues. It ends with a jump or a silence to
-///   a position that the joint can have, after twenty times as many readings. If the jump was small (the
-///   velocity limit times two periods, or one interval if the period is unknown), the run itself is trusted
-///   after twenty times as many readings. After fifty times as many, a loss that began with a jump ends only
-///   with the reverse jump or a restart.
+///   a position that the joint can have, after twenty times as many readings. A run after a small jump is
+///   itself trusted after as many. Small: the velocity limit times two periods, or one interval if the period
+///   is unknown. After fifty times as many, a loss that began with a jump ends only with the reverse jump or
+///   a restart.
 /// - A position that has been trusted for less time than the preceding silence or jump (at most 0.4 s) is on
 ///   trial. A run that connects with the earlier trusted motion and reverses most of the jump replaces it.
 /// - Readings that jump five times further than the joint can move are rejected until they return, jump
@@ -110,7 +109,7 @@ class MotionGate : private MotionEvidence {
         refused_time_known_ = !lost();
     }
 
-    /// Trusts the readings of a lost joint if a clock step of `step_ns` explains their offset, and if they
+    /// Trusts the readings of a lost joint if a clock step of `step_ns` explains their offset. They must
     /// follow the last trusted reading without a silence. Requires that other sources show the same clock
     /// step.
     constexpr void explain_by_clock(std::int64_t step_ns) noexcept {
@@ -333,8 +332,8 @@ class MotionGate : private MotionEvidence {
         lost_readings_ = std::min(lost_readings_ + readings, most_lost_readings());
     }
 
-    /// Returns true if the joint was lost for so long that its limits allow any position, and the run does
-    /// not reverse the jump with which the loss began.
+    /// Returns true if the limits allow any position after such a long loss, and the run does not reverse the
+    /// jump with which the loss began.
     [[nodiscard]] constexpr bool stays_elsewhere() const noexcept {
         return lost_readings_ == most_lost_readings() && lost_jump_rad_ != 0 &&
                !reverses_jump(lost_jump_rad_);
