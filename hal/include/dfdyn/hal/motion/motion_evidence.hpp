@@ -154,7 +154,7 @@ class MotionEvidence {
                (!stood_at(first) || trusted_.repeats(first, tolerance_));
     }
 
-    /// Forgets the unfit readings, because the joint's motion contradicts them.
+    /// Forgets the unfit readings, because the joint is trusted.
     constexpr void forget_unfit() noexcept {
         unfit_.clear();
         counts_from_zero_ = false;
