@@ -3,16 +3,16 @@
 
 #include "simulated_joints.hpp"
 
-/// The controller and a simulated arm, tick by tick: for a computer, and for the timer interrupt of a
-/// Cortex-M.
+/// The controller and a simulated arm. A computer calls `tick` in a loop, a Cortex-M in its timer interrupt.
 class ClosedLoop {
   public:
     ClosedLoop()
         : controller_({.position = 80, .velocity = 8, .inertia = 0.2F, .limit = 15, .bandwidth = 30}) {
         controller_.activate(joints_.state());
-        controller_.relearn(); // these joints are not those of the training
+        controller_.relearn(); // the simulated joints differ from those of the training
     }
 
+    /// Computes the efforts of one period and simulates it.
     void tick() {
         const JointController::Reference reference = SimulatedJoints::reference(tick_++);
         const JointController::State& state = joints_.state();
@@ -23,7 +23,8 @@ class ClosedLoop {
         joints_.advance(controller_.update(state, reference, SimulatedJoints::nominal(reference)));
     }
 
-    /// Returns the root mean square tracking error since the last call, over all joints, rad.
+    /// Returns the root mean square tracking error over all joints and the `ticks` > 0 since the last call,
+    /// rad.
     float take_error(int ticks) {
         const float mean = error_square_ / static_cast<float>(ticks * JointController::joints);
         error_square_ = 0;

@@ -14,21 +14,21 @@
 #include <limits>
 #include <span>
 
-/// Tells new measurements by their stamps. A stamp that is not within `longest_gap_ns` after the last new one
-/// is not new, but `agreeing` in a row that follow each other are: the clock was set, or measurements were
-/// missing. One stray stamp therefore costs one measurement.
+/// Detects new measurements by their time stamps. A stamp is new if it is later than the last new one, by at
+/// most `longest_gap_ns`. After a longer gap, or after the clock was set, `agreeing` consecutive stamps in
+/// order are required. A single wrong stamp therefore costs one measurement.
 class StampClock {
   public:
     static constexpr std::uint64_t longest_gap_ns = 100'000'000; ///< between two measurements
-    static constexpr int agreeing = 3;                           ///< stamps in a row that set the clock
+    static constexpr int agreeing = 3; ///< consecutive stamps in order that restart the clock
 
-    /// The next measurement is new if its stamp is this one or follows it.
+    /// Restarts: the next new stamp is `time_ns` or a later one.
     void restart(std::int64_t time_ns) {
         accepted_ns_ = last_ns_ = time_ns - 1;
         in_a_row_ = 0;
     }
 
-    /// Returns whether a measurement with this stamp is new.
+    /// Processes a stamp and returns true if its measurement is new. O(1).
     bool advances(std::int64_t time_ns) {
         in_a_row_ = follows(time_ns, last_ns_) ? std::min(in_a_row_ + 1, agreeing) : 1;
         last_ns_ = time_ns;
@@ -38,7 +38,7 @@ class StampClock {
     }
 
   private:
-    /// The difference of any two stamps is correct as an unsigned number.
+    /// Returns true if the first stamp is later, by at most the gap. The unsigned difference cannot overflow.
     static bool follows(std::int64_t time_ns, std::int64_t before_ns) {
         return time_ns > before_ns &&
                static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(before_ns) <= longest_gap_ns;
@@ -46,30 +46,30 @@ class StampClock {
 
     std::int64_t accepted_ns_ = 0; // the last new stamp
     std::int64_t last_ns_ = 0;     // the last stamp
-    int in_a_row_ = 0;             // stamps that follow each other, at most `agreeing`
+    int in_a_row_ = 0;             // consecutive stamps in order, at most `agreeing`
 };
 
-/// A controller to copy and adapt. It is called like one of ros2_control: `activate`, then `update` in each
-/// period. It contains feedback, the learned feed-forward and an observer for the remaining disturbance.
-/// Efforts are in the unit of the model's outputs, here A. The period is fixed at compile time. No operating
-/// system, no heap, bounded time per tick.
+/// Joint controller to copy and adapt: PD feedback, learned feed-forward and a disturbance observer. Call it
+/// like a ros2_control controller: `activate` once, then `update` in each period. Efforts are in the unit of
+/// the model's outputs, here A. The period is fixed at compile time. It needs no operating system and no
+/// heap, and its time per tick is bounded.
 ///
-/// A joint without a new measurement (NaN, or a sample whose time does not advance) keeps its correction,
-/// which is the sum of feedback and observer, for `hold_ticks`. Then the correction goes to zero, and when
-/// measurements return to its new value, by at most `step_share` of the limit per tick. The controller does
-/// not stop the arm: if `ticks_without_sample` exceeds what your arm tolerates, stop it.
+/// The *correction* is the sum of feedback and observer. A joint without a new measurement (NaN, or a stamp
+/// that does not advance) keeps its correction for `hold_ticks`. Then the correction ramps to zero. When
+/// measurements return it ramps to its new value. A ramp changes by `step_share` of the limit per tick. The
+/// controller does not stop the arm: stop it if `ticks_without_sample` exceeds what your arm tolerates.
 class JointController {
   public:
     static constexpr int joints = 6;                     ///< of the arm and of the model
     static constexpr std::int64_t period_ns = 1'000'000; ///< of `update`
     static constexpr int ticks_per_sample = 8;           ///< the model was trained on samples 8 ms apart
-    static constexpr int hold_ticks = 5; ///< for which a joint without measurements keeps its correction
+    static constexpr int hold_ticks = 5;          ///< ticks that a correction is held without measurement
     static constexpr float observer_share = 0.3F; ///< of the limit: the observer's largest effort
     static constexpr float step_share = 0.02F;    ///< of the limit, per tick: 20 limits per second
 
     using Learned = dfdyn::LearnedTorque<ur5_model::Model>;     ///< the model and its state
     using Forward = dfdyn::FeedForward<Learned>;                ///< nominal and learned effort
-    using Observer = dfdyn::DisturbanceObserver<float, joints>; ///< what the feed-forward leaves
+    using Observer = dfdyn::DisturbanceObserver<float, joints>; ///< for the error of the feed-forward
     using Reference = dfdyn::Reference<float, joints>;          ///< position, velocity, acceleration
     using Efforts = dfdyn::Storage<float, joints>;              ///< one value per joint, A
 
@@ -101,7 +101,7 @@ class JointController {
                               .observer_limit = all(observer_share * gains.limit)}),
           observer_({}, {1e-9F * period_ns, all(gains.bandwidth), all(observer_share * gains.limit)}) {}
 
-    /// Starts the controller. The arm rests at the beginning of the reference.
+    /// Starts the controller. The arm must be at rest at the beginning of the reference.
     void activate(const State& state) {
         forward_.begin(state.time_ns, state.position.data());
         observer_.restart();
@@ -111,13 +111,13 @@ class JointController {
         recovering_ = {};
     }
 
-    /// Returns the efforts until the next period. `nominal`: effort of your own model for the reference;
-    /// zeros without one.
+    /// Performs one tick and returns the efforts to apply until the next one, A, within ± `limit`. `state`:
+    /// newest measurement. `nominal`: effort of your own model for the reference, A; zeros without a model.
     const Efforts& update(const State& state, const Reference& reference, const Efforts& nominal) {
         const Efforts before = effort_; // in effect until the present position was reached
         const Efforts& forward = forward_.update(reference, nominal.data());
         const bool exact = correct(state, reference);
-        bool limited = !exact; // then the effort is not the one that the motion needs
+        bool limited = !exact; // the effort then differs from what the motion requires
         for (int k = 0; k < joints; ++k) {
             const float wanted = forward[k] + correction_[k];
             effort_[k] = std::clamp(wanted, -gains_.limit, gains_.limit);
@@ -134,26 +134,26 @@ class JointController {
     /// Returns the number of ticks since the last new measurement of this joint.
     [[nodiscard]] int ticks_without_sample(int joint) const { return missed_[joint]; }
 
-    /// Tells the learner that the arm is another than that of its training, or has changed. Otherwise it
-    /// takes much of what it measures for pushes, and follows slowly.
+    /// Call this if the arm has changed or differs from that of the training. Without it the learner rejects
+    /// many samples as outliers and adapts slowly.
     void relearn() { learned_.relearn(); }
 
-    /// Switches the learned part on and off, without a step.
+    /// Includes or excludes the learned part, without a step in the effort.
     void enable_learned(bool on) { forward_.enable(on); }
 
     /// Returns the feed-forward: its share, its learned part, and the learner with its counters.
     [[nodiscard]] const Forward& forward() const { return forward_; }
 
-    /// Returns a writer of what has been learned, for example to flash, piece by piece between ticks.
+    /// Returns a writer that saves the learned state in pieces between ticks, for example to flash.
     [[nodiscard]] auto snapshot_writer() { return learned_.snapshot_writer(); }
-    /// Restores what had been learned. Call it before `activate`. A faulty snapshot changes nothing.
+    /// Restores a saved state. Call it before `activate`. A rejected snapshot changes nothing.
     dfdyn::SnapshotResult restore(std::span<const std::byte> snapshot) { return learned_.restore(snapshot); }
 
   private:
     static Efforts all(float value) { return {{value, value, value, value, value, value}}; }
 
-    /// Computes the corrections. Returns whether all joints have a new measurement and none is limited in
-    /// its rate.
+    /// Computes the corrections. Returns true if every joint has a new measurement and no correction is
+    /// rate-limited.
     bool correct(const State& state, const Reference& reference) {
         const bool advanced = clock_.advances(state.time_ns);
         Efforts error_rate, feedback;
@@ -184,7 +184,7 @@ class JointController {
         return exact;
     }
 
-    /// Moves a correction to `wanted`, after missing measurements in small steps until it is there.
+    /// Sets a correction to `wanted`; after missing measurements it ramps there.
     void approach(int k, float wanted) {
         const float step = step_share * gains_.limit;
         const float before = correction_[k];
@@ -196,7 +196,7 @@ class JointController {
     Learned learned_;
     Forward forward_;
     Observer observer_;
-    static constexpr int most_missed = 1'000'000; // the count ends there
+    static constexpr int most_missed = 1'000'000; // the count saturates
 
     Efforts effort_{}, excess_{};
     Efforts correction_{}; // of feedback and observer

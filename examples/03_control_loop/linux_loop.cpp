@@ -31,14 +31,14 @@ constexpr std::int64_t second_ns = 1'000'000'000;
 
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * second_ns + time.tv_nsec; }
 
-/// Sleeps until the next period. Returns false after a tick that took longer than its period. The ticks that
-/// were missed are not made up: in a burst, the reference would run faster than the arm.
+/// Sleeps until the next period. Returns false if the loop is a period late or more. Missed ticks are
+/// skipped: catching up in a burst would move the reference faster than the arm.
 bool sleep_for_period(timespec& due) {
     due.tv_nsec += JointController::period_ns;
     due.tv_sec += due.tv_nsec / second_ns;
     due.tv_nsec %= second_ns;
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
-        // a signal: sleep on, or this tick would begin early
+        // interrupted by a signal: continue to sleep
     }
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC, &now);

@@ -51,7 +51,7 @@ class SimulatedJoints {
         return effort;
     }
 
-    /// Simulates one period with these efforts, in short steps.
+    /// Simulates one period with constant efforts, A, in short integration steps.
     void advance(const JointController::Efforts& effort) {
         constexpr int steps = 4;
         constexpr float step_s = period_s / steps;
@@ -68,7 +68,7 @@ class SimulatedJoints {
     [[nodiscard]] const JointController::State& state() const { return state_; }
 
   private:
-    /// Friction, smooth near zero velocity so that the steps can be long.
+    /// Returns Coulomb and viscous friction, A; smooth near zero velocity, so that longer steps are stable.
     static float friction(float velocity) {
         constexpr float slow = 0.01F; // rad/s
         return coulomb * velocity / (slow + std::abs(velocity)) + viscous * velocity;
