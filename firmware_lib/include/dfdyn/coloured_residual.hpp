@@ -104,9 +104,9 @@ class LatticePredictor {
 /// contact. As feed-forward it would be positive feedback. Feed forward a prediction for the reference
 /// instead: `FeedForward`.
 ///
-/// A model's errors are coloured: at 125 Hz, and more so at 1 kHz, most of an error repeats that of the
-/// previous sample. The last output y(t-1) alone can therefore have a smaller error than the model. Each
-/// output has two forecasts and a weight w:
+/// The errors of a model are autocorrelated: at 125 Hz, and more so at 1 kHz, most of an error repeats the
+/// previous one. The last output y(t-1) alone can therefore have a smaller error than the model. Each output
+/// has two forecasts and a weight w:
 ///  - a: the model's prediction plus a second-order autoregression of its own residual;
 ///  - b: the last measurement plus a second-order autoregression of its differences;
 ///  - forecast: b + w (a - b), with w in [0, 1] the least-squares weight over the memory (C. W. J. Granger
@@ -118,8 +118,8 @@ class LatticePredictor {
 ///      if (sample.output_valid) residual.learn(prediction, sample.output.data());
 ///      else residual.restart();
 ///
-/// A refused sample with a finite measurement, for example during a contact, may be learned: every value is
-/// clipped to ten times the root mean square. Cost: `cost()`; 15 m scalars. Never allocates.
+/// A finite measurement may be learned here even if the estimator refused its sample, as during a contact:
+/// every value is clipped to ten times the root mean square. Cost: `cost()`; 15 m scalars. Never allocates.
 template <class Scalar, int m>
 class ColouredResidual {
   public:

@@ -26,7 +26,7 @@ class Estimator {
   public:
     using Model = ModelType;                                  ///< a `dfdyn::Model`
     using Scalar = typename Model::Scalar;                    ///< float or double
-    using Constants = typename Model::Constants;              ///< what `dfdyn train` writes
+    using Constants = typename Model::Constants;              ///< trained model, written by `dfdyn train`
     using Sample = typename Model::Sample;                    ///< positions and outputs of one tick
     using Estimate = dfdyn::Estimate<Scalar, Model::outputs>; ///< result of one tick
 
@@ -90,10 +90,10 @@ class Estimator {
     }
 
     /// Requests a reset of the covariance to the prior's, after a change of the arm. It begins in the next
-    /// tick with a budget. The weights stay, and soon follow later measurements.
+    /// tick with a budget. The weights stay and then adapt quickly to new measurements.
     void relearn() noexcept { gate_.report_change(); }
 
-    /// Begins a new recording or motion: the window and the clock start again, what has been learned stays.
+    /// Begins a new recording or motion: restarts the window and the clock, keeps the learned state.
     void restart_window() noexcept {
         regression_.restart();
         stamps_.restart();
@@ -101,7 +101,7 @@ class Estimator {
     }
 
     /// Returns the size of a snapshot in bytes. It contains the learned state, including a sample that is
-    /// still being learned, but not the window: past positions are of no use after a later start.
+    /// still being learned, but not the window: past positions are useless after a later start.
     [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(*this); }
 
     /// Size in bytes of a buffer that holds any snapshot of a firmware model.
@@ -268,7 +268,8 @@ class Estimator {
         outputs_.to_output_units(*constants_, sample, measured, estimate);
     }
 
-    /// Applies the doubt at the input; after a change of the arm, until `reset`, to the variances only.
+    /// Applies `Extrapolation` at this input; after a change of the arm, until `reset`, to the variances
+    /// only.
     void extrapolate(Scalar feature_variance, Estimate& estimate) noexcept {
         outputs_.extrapolate(*constants_, feature_variance, changed_ == 0, estimate);
     }

@@ -16,23 +16,21 @@ namespace dfdyn {
 ///
 /// Per output, the weight of a member is inversely proportional to the square of its expected square error at
 /// this input. After J. M. Bates and C. W. J. Granger, "The combination of forecasts" (1969), where weights
-/// are inversely proportional to the mean square error itself. Three different quantities serve as expected
-/// square error:
-///  - while samples are learned, for their predictions: the mean square error one step ahead over about
-///    `memory` samples, times the variance of a measurement at this input divided by its mean over the same
-///    samples. Only the ratio of a member's variances is used, not their size, and at least 1, so that a
-///    member does not gain from having been uncertain for a while (after a reset of its covariance);
-///  - for predictions with weights of some time ago: the same with the errors of such predictions (`ahead`).
-///    Errors one step ahead mostly measure tracking, and do not show how a member predicts without learning;
-///  - where nothing has been learned yet, or for some memories: the variance of the noise plus a factor times
-///    that of the parameters at this input. Between the two, the last errors ahead lose their influence.
+/// are inversely proportional to the mean square error itself. The expected square error is
+///  - while samples are learned: the mean square error one step ahead over about `memory` samples, times a
+///    ratio of variances. The ratio is the variance of a measurement at this input divided by its mean over
+///    the same samples, at least 1. Otherwise a member would gain from a period of uncertainty, for example
+///    after a reset of its covariance;
+///  - for predictions with older weights: the same with the errors of such predictions (`ahead`). Errors one
+///    step ahead mostly measure tracking, and do not show how a member predicts without learning;
+///  - before the first learned sample, and some memories after the last: the noise variance plus a factor
+///    times the variance due to the parameters at this input. The influence of past errors decays gradually.
 ///
-/// The power and a memory of 0.8 s were chosen on the UR5 recordings No5 and No6, as was the ratio of
-/// variances instead of a variance added to the mean square errors. Weights are in [0, 1] and sum to 1, so
-/// the combination of finite predictions lies between them. A square error is clipped to 10⁴ times the mean
-/// square error of the best member, so that an absurd error is forgotten within five memories; without
-/// `noise_std` the clipping begins once the memory is full. A variance is clipped to 10 times the member's
-/// mean.
+/// The power, the ratio of variances and a memory of 0.8 s were chosen on the UR5 recordings No5 and No6.
+/// Weights are in [0, 1] and sum to 1, so the combination of finite predictions lies between them. A square
+/// error is clipped to 10⁴ times the best member's mean square error. An absurd error is thus forgotten
+/// within five memories. Without `noise_std` the clipping begins once the memory is full. A variance is
+/// clipped to 10 times the member's mean.
 ///
 ///     for each member j: estimate[j] = estimator[j].tick(sample, budget);   // into tables, member by member
 ///     combination.weigh(deviations);                        // at this input; without: by past errors alone
@@ -59,8 +57,8 @@ class ForecastCombination {
     /// `memory`: samples, ≥ 1; smaller values count as 1. `noise_std`: standard deviation of each member's
     /// noise per output, a table of values > 0 in the outputs' units, used as the expected errors at the
     /// start; nullptr if unknown: members then have equal weights until their errors are known.
-    /// `unjudged_factor`: factor on the variance of the members' parameters before the first error and some
-    /// memories after the last; ≥ 0.
+    /// `unjudged_factor`: factor on the variance of the members' parameters while no recent errors are known;
+    /// ≥ 0.
     constexpr ForecastCombination(Extent<members> member_count, Extent<m> output_count, Scalar memory,
                                   const Scalar* noise_std = nullptr,
                                   Scalar unjudged_factor = variance_factor) noexcept
@@ -132,9 +130,10 @@ class ForecastCombination {
         }
     }
 
-    /// Updates the mean square errors from the members' predictions of a sample and its m measured outputs,
-    /// and the mean variances from the deviations of the last `weigh`. `ahead`: predictions of the same
-    /// sample with older weights; may be `predictions`. Then computes the weights from the errors alone.
+    /// Updates the mean square errors with the members' `predictions` of a sample (a table) and its m
+    /// `measured` outputs, and the mean variances with the deviations of the last `weigh`. `ahead`: table of
+    /// predictions of the same sample with older weights; may be `predictions`. A NaN error counts as the
+    /// largest possible one. Then computes the weights from the errors alone.
     constexpr void learn(const Scalar* predictions, const Scalar* ahead, const Scalar* measured) noexcept {
         for (int i = 0; i < count() && trust_ < 1; ++i) { // the past errors have lost influence
             mean_square_[i] = blended(mean_square_[i], noise_square_[i]);
@@ -158,11 +157,11 @@ class ForecastCombination {
         weigh();
     }
 
-    /// Accounts for a tick without learning. Has no effect for an eighth of a memory (0.1 s at 0.8 s): single
-    /// refused or lost samples do not change the weights. Afterwards errors ahead replace those one step
-    /// ahead, as the members' parameters become older, and the influence of past errors decays: one more
-    /// memory later the members' noise and variances decide. The last errors before a standstill carry
-    /// little information about the next motion. Without `noise_std` nothing decays.
+    /// Accounts for a tick without learning. It has no effect for an eighth of a memory (0.1 s at 0.8 s):
+    /// single refused or lost samples do not change the weights. Afterwards errors ahead replace the errors
+    /// one step ahead, because the members' parameters become older. The influence of past errors then decays
+    /// with a time constant of one memory: the last errors before a standstill carry little information about
+    /// the next motion. Without `noise_std` nothing decays.
     constexpr void skip() noexcept {
         skipped_ = std::min(skipped_ + 1, memory_);
         if (skipped_ > patience * memory_) {
@@ -267,7 +266,7 @@ class ForecastCombination {
         }
     }
 
-    /// Returns the mean of two expected square errors by the share of past errors.
+    /// Interpolates between two expected square errors by the share of past errors.
     [[nodiscard]] constexpr Scalar blended(Scalar judged, Scalar unjudged) const noexcept {
         return unjudged + trust_ * (judged - unjudged);
     }
@@ -307,7 +306,7 @@ class ForecastCombination {
     Scalar memory_;
     Scalar unjudged_factor_;
     Scalar samples_ = 0;    ///< memory of the means so far, at most `memory_`
-    Scalar trust_ = 1;      ///< share of the past errors, in [0, 1]; the rest is the variances'
+    Scalar trust_ = 1;      ///< share of the past errors, in [0, 1]; the variances have the rest
     Scalar skipped_ = 0;    ///< samples since the last one that was learned, at most `memory_`
     bool one_step_ = false; ///< errors one step ahead are used, not those ahead
     Table noise_square_;    ///< zero: unknown

@@ -9,10 +9,10 @@
 
 namespace dfdyn {
 
-/// Distinguishes a push from a change of the arm by how long measurements contradict the model.
+/// Distinguishes a push from a change of the arm by the time for which measurements contradict the model.
 ///
-/// The contradiction of a sample is its normalised innovation squared divided by a limit: that of the model,
-/// times a level that adapts to this arm.
+/// The contradiction of a sample is its normalised innovation squared divided by a limit. The limit is the
+/// model's, times a level that adapts to this arm.
 ///  - Up to 1 the sample is learned unchanged.
 ///  - Up to `rejection` it is learned with contradiction⁴ times the noise variance. The further beyond the
 ///    limit, the less it changes the model: a redescending influence function in three parts (F. R. Hampel,
@@ -29,9 +29,9 @@ namespace dfdyn {
 /// at each reversal. They delay the decision by their number, but do not reset the count to 0.
 ///
 /// The level is a running quantile by stochastic approximation, and at least 1. Only samples that are learned
-/// unchanged after a change raise it, so that a model that never fits is not reported as changed again and
-/// again. The exponent, `rejection` and `settling` were chosen on a simulated two-link arm, on motions No3 to
-/// No6 of a measured arm and on runs 00 to 03 of a servo; for `alarm` a pushed motion No7 was also used.
+/// unchanged after a change raise it, so that a model that never fits is not reported repeatedly. The
+/// exponent, `rejection` and `settling` were chosen on a simulated two-link arm, motions No3 to No6 of a
+/// measured arm and runs 00 to 03 of a servo. For `alarm` a pushed motion No7 was also used.
 template <class Scalar>
 class InnovationGate {
   public:
@@ -78,17 +78,17 @@ class InnovationGate {
         return contradiction > Scalar(rejection) ? Scalar(0) : fourth;
     }
 
-    /// Returns whether the arm has been found to have changed and `take_change` has not reported it yet.
+    /// Returns whether a change of the arm was detected and `take_change` has not reported it yet.
     [[nodiscard]] constexpr bool change_pending() const noexcept { return change_pending_; }
 
-    /// Registers a change of the arm that was found elsewhere, as if the gate had found it.
+    /// Registers a change of the arm that was detected elsewhere, as if the gate had detected it.
     constexpr void report_change() noexcept {
         change_pending_ = true;
         changed_ = patience_ > 0;
         count_ = changed_ ? settling * patience_ : count_;
     }
 
-    /// Reports a change of the arm once.
+    /// Returns true once after each detected change of the arm.
     constexpr bool take_change() noexcept {
         const bool pending = change_pending_;
         change_pending_ = false;

@@ -10,8 +10,8 @@
 
 namespace dfdyn {
 
-/// Returns a checksum over the kinds of all parts of a model, the sizes, the scalar and the constants'
-/// identity, because models that differ in any of these may have the same identity. A snapshot contains it.
+/// Returns a checksum over the kinds of all parts of a model, its sizes, its scalar and `constants.identity`,
+/// which alone may be equal for different models. A snapshot contains the checksum.
 template <class Model>
 [[nodiscard]] std::uint32_t model_identity(const typename Model::Constants& constants,
                                            const typename Model::Sizes& sizes) noexcept {

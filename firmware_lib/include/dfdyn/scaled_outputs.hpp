@@ -12,8 +12,8 @@
 namespace dfdyn {
 
 /// The outputs of one tick in the regression's units, relative to the offset and the noise standard deviation
-/// that `Model::Constants` contain: what was measured, and the variance of a measurement about what was
-/// predicted. Every function costs O(outputs).
+/// that `Model::Constants` contain: the measurements, and the variance of each about its prediction. Every
+/// function costs O(outputs).
 template <class Model>
 class ScaledOutputs {
   public:
@@ -39,7 +39,7 @@ class ScaledOutputs {
     /// Returns the buffer, one number per output, for the prediction of the physics alone.
     [[nodiscard]] Scalar* without_features() noexcept { return without_features_.data(); }
 
-    /// Returns `ok` for measured outputs, in their own units, within their limits.
+    /// Returns `ok` if the outputs are measured, finite and within their limits; otherwise the reason.
     [[nodiscard]] Reason check_measured(const Constants& constants, const Sample& sample) const noexcept {
         if (!sample.output_valid) {
             return Reason::output_missing;
@@ -67,10 +67,10 @@ class ScaledOutputs {
         return error_square;
     }
 
-    /// Reduces the prediction, in units of the noise, by the doubt at its input (see `Extrapolation`), and
-    /// converts the ratios to the variances of measurements about it. After a change of the arm, P covers
-    /// only the samples since then, while the weights are still the best estimate elsewhere: with `reduce`
-    /// false the prediction is not reduced.
+    /// Reduces the prediction, in units of the noise, by the doubt at its input (see `Extrapolation`).
+    /// Converts the ratios to the variances of measurements about it. `reduce` false: does not reduce the
+    /// prediction. After a change of the arm, P covers only the samples since then, but the weights are still
+    /// the best estimate elsewhere.
     void extrapolate(const Constants& constants, Scalar feature_variance, bool reduce,
                      Estimate& estimate) noexcept {
         const auto& known = constants.extrapolation;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// For those who have Eigen in their loop: views of the library's numbers as Eigen's matrices, without a copy.
-// A view is valid as long as what it views. The library itself does not need Eigen.
+// Optional views of the library's numbers as Eigen matrices, without a copy. A view is valid as long as the
+// object that it refers to. The library itself does not need Eigen.
 #include "dfdyn/core/storage.hpp"
 #include "dfdyn/learner/learner.hpp"
 
@@ -20,8 +20,9 @@ using VectorView = Eigen::Map<Eigen::Vector<Scalar, count>, Eigen::Aligned32>;
 template <class Scalar, int count>
 using ConstVectorView = Eigen::Map<const Eigen::Vector<Scalar, count>, Eigen::Aligned32>;
 
-/// Any numbers of a sample (`position`, `output`, `velocity`, `acceleration`) or an estimate (`prediction`,
-/// `standard_deviation`, `innovation`).
+/// Returns a view of the numbers of a sample (`position`, `output`, `velocity`, `acceleration`) or an
+/// estimate
+/// (`prediction`, `standard_deviation`, `innovation`): `count` × 1, in their unit. O(1).
 template <class Scalar, int count>
 VectorView<Scalar, count> view(Storage<Scalar, count>& numbers) noexcept {
     return VectorView<Scalar, count>(numbers.data());
@@ -31,17 +32,17 @@ ConstVectorView<Scalar, count> view(const Storage<Scalar, count>& numbers) noexc
     return ConstVectorView<Scalar, count>(numbers.data());
 }
 
-/// A view of what is gone with its expression would dangle.
+/// Rejects temporary objects, whose view would dangle.
 template <class Scalar, int count>
 void view(const Storage<Scalar, count>&& numbers) = delete;
 
-/// m x p, a row per output; rows need not follow each other without a gap.
+/// View of weights, m × p: one row per output, with a stride between the rows.
 template <class Scalar, int p, int m>
 using WeightsView = Eigen::Map<const Eigen::Matrix<Scalar, m, p, Eigen::RowMajor>, Eigen::Unaligned,
                                Eigen::OuterStride<Eigen::Dynamic>>;
 
-/// The weights of `estimator.regression().learner()` of a nonparametric model (p = 2d), in units of each
-/// output's noise. They change while a sample is being learned: read them when the learner is `idle()`.
+/// Returns a view of the weights of `estimator.regression().learner()` of a nonparametric model: m × 2d, in
+/// units of each output's noise. Read it when the learner is `idle()`: learning changes the weights. O(1).
 template <template <class, int, int> class Form, class Scalar, int p, int m>
 requires Learner<Form<Scalar, p, m>, Scalar> &&
     (p > 1) WeightsView<Scalar, p, m> view_weights(const Form<Scalar, p, m>& learner) noexcept {

@@ -10,23 +10,22 @@
 
 namespace dfdyn {
 
-/// Estimates, per joint, the torque that the feed-forward leaves to the feedback, and takes it over.
+/// Disturbance observer: estimates, per joint, the error of the feed-forward torque. With the estimate added
+/// to the command, the feedback torque returns to zero.
 ///
-/// Let F = P e + D de/dt be the feedback of the tracking error e, and J the inertia of the joint. If the
-/// feed-forward is exact up to a disturbance, the disturbance is the sum of F and this observer's torque
-/// minus the torque that accelerates the error. Low-pass filtered with bandwidth b:
+/// Let F = P e + D de/dt be the feedback of the tracking error e, and J the inertia of the joint. The
+/// disturbance is the sum of F, the observer's torque and J d²e/dt². Low-pass filtered with bandwidth b, the
+/// estimate is
 ///
 ///     d = b (∫ F dt + J de/dt),   so that   (J s² + D s + P)(s + b) e = s · disturbance.
 ///
 /// The poles of the feedback stay in place, and a pole at -b is added. After K. Ohnishi, "A new servo method
 /// in mechatronics" (1987), written for the error, so that no acceleration is needed. The observer has no
-/// memory: a disturbance that repeats with every motion, such as friction, is estimated each time with a lag
+/// memory: it estimates a disturbance that repeats with every motion, such as friction, each time with a lag
 /// of 1/b. `FeedForward` learns such disturbances from the commands; the estimate then returns to zero.
 ///
-/// `LoopMargin` gives the bandwidth that a loop tolerates. If the joint is blocked, the estimate rises to its
-/// limit.
-///
-/// Cost: 8 multiply-adds per joint and tick, 5 n + 1 scalars. Never allocates.
+/// `LoopMargin` computes the bandwidth that a loop tolerates. If the joint is blocked, the estimate rises to
+/// its limit. Cost: 8 multiply-adds per joint and tick, 4 n + 1 scalars. Never allocates.
 template <class Scalar, int n>
 class DisturbanceObserver {
   public:
@@ -77,11 +76,11 @@ class DisturbanceObserver {
     /// Returns the torque to add to feed-forward and feedback, N·m.
     [[nodiscard]] const Torques& estimate() const noexcept { return estimate_; }
 
-    /// Returns the part of the estimate that remains while the error is constant, N·m: the torque that holds
-    /// the arm when the loop ends.
+    /// Returns the integral part of the estimate, N·m: the part that remains while the error is constant. It
+    /// holds the arm when the loop ends.
     [[nodiscard]] const Torques& lasting() const noexcept { return integral_; }
 
-    /// Multiply-adds of `update`.
+    /// Returns the multiply-adds of `update`.
     [[nodiscard]] static constexpr std::int64_t cost(Extent<n> joint_count) noexcept {
         return std::int64_t{8} * joint_count;
     }

@@ -14,7 +14,7 @@
 namespace dfdyn {
 
 /// A learner that `FeedForward` can use; `LearnedTorque` documents the calls. `predict` writes
-/// `forecast_count()` forecasts of n torques, one after the other; NaN for a forecast that is unknown.
+/// `forecast_count()` forecasts of n torques, one after the other; NaN marks an unknown forecast.
 template <class L>
 concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename L::Scalar* values,
                                  typename L::Scalar* torque) {
@@ -31,28 +31,27 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 
 /// Feed-forward torque for a reference: a blend of the caller's nominal torque and a learned torque.
 ///
-/// Once per sample period of its model (a *knot*) the learner predicts the torque of the next knot, for the
-/// reference extrapolated at constant acceleration: one or more forecasts. Between knots the torque is
-/// interpolated. `commanded` compares all forecasts, and the nominal torque, with the torque that was finally
-/// commanded, per joint and knot. They are combined as in `ForecastCombination`, over the last `memory_s`.
-/// The command contains the feedback, so the comparison includes the tracking error and needs no torque
-/// sensor. Errors that change faster than the feedback can follow do not appear in the command and are not
-/// detected. Until `memory_s` of comparisons is available, only the nominal torque is used.
+/// Once per sample period of its model (a *knot*) the learner predicts the torque at the next knot: one or
+/// more forecasts, for the reference extrapolated at constant acceleration. Between knots the torque is
+/// interpolated. At each knot `commanded` compares the nominal torque and all forecasts of a joint with its
+/// commanded torque. `ForecastCombination` weights them by their errors over the last `memory_s`. The command
+/// contains the feedback, so the comparison includes the tracking error and needs no torque sensor. Errors
+/// that are too fast for the feedback do not appear in the command and are not detected. Until `memory_s` of
+/// comparisons is available, only the nominal torque is used.
 ///
-/// A `DisturbanceObserver` takes over slow errors of a forecast, and leaves fast ones as tracking error. With
-/// its bandwidth and limit in the settings, each error is therefore high-pass filtered with this bandwidth
-/// before it is compared: its slow part, as far as the observer's limit reaches, counts with the share
-/// `slow_share` only. Errors beyond ± `limit` count as `limit`, and slow parts fade while nothing is
-/// compared, so one absurd forecast is forgotten within the memory.
+/// A `DisturbanceObserver` compensates slow errors of a forecast; fast ones remain as tracking error. Each
+/// error is therefore high-pass filtered with the observer's bandwidth before it is compared: its slow part,
+/// up to the observer's limit, counts with the share `slow_share` only. Errors are clipped to ± `limit`, and
+/// slow parts decay while nothing is compared. An absurd forecast is thus forgotten within the memory.
 ///
-/// A forecast that is unknown is left out, and its error counts as that of the nominal torque: it earns no
-/// more, and one that has never been known starts with the weight of the nominal torque. The known forecasts
-/// are used in its place at once, each with the weight that it earned beyond the nominal torque; one that was
-/// no better than the nominal torque has none. A forecast beyond ± `limit` counts as `limit`.
+/// An unknown forecast is left out. In the comparison it counts as the nominal torque, so it gains no weight;
+/// a forecast that was never known starts with the weight of the nominal torque. The known forecasts replace
+/// it at once. Each then has the excess of its weight over the nominal torque's, at least 0. Forecasts are
+/// clipped to ± `limit`.
 ///
-/// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`, and the
-/// shares of the forecasts within it change in `fall_s`. It adds at most `cap` to the nominal torque and
-/// changes at most at `rate`. The total stays within `limit`.
+/// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`. The
+/// shares of the forecasts in it change within `fall_s`. The learned part adds at most `cap` to the nominal
+/// torque and changes at most at `rate`. The total stays within `limit`.
 ///
 ///     begin(now, position);                              // the arm rests at the reference's start
 ///     each control tick:
@@ -61,7 +60,7 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 ///         measured(time, position, torque that was in effect then);   // nullptr if unknown
 ///
 /// Learn from the command that was in effect when the position was read rather than from a torque sensor:
-/// offset and scale errors of a sensor then have no effect. Cost per tick: the learner's and `cost()`.
+/// offset and scale errors of a sensor then have no effect. Cost per tick: the learner's cost plus `cost()`.
 template <TorqueLearner Learner>
 class FeedForward {
   public:
@@ -73,9 +72,8 @@ class FeedForward {
 
     using Settings = FeedForwardSettings<Scalar, n>; ///< limits and times
 
-    /// Ticks by which the interpolation leads. A command is held for a tick, so on average it acts half a
-    /// tick late. The torque that was learned with a position had also been held before that position was
-    /// read.
+    /// Lead of the interpolation, ticks. A command is held for a tick, so on average it acts half a tick
+    /// late. A learned torque was held, on average, half a tick before its position was read.
     static constexpr Scalar lead = 1;
 
     /// Refers to `learner`, which must outlive this object; copies `settings`. Call `begin` before the first
@@ -100,7 +98,7 @@ class FeedForward {
     /// Returns whether all settings are finite and within their ranges. If not, torques and shares stay 0.
     [[nodiscard]] bool settings_valid() const noexcept { return settings_valid_; }
 
-    /// Starts a motion. The arm rests at `position` (n values, rad).
+    /// Starts a motion at `time_ns` from rest at `position` (n values, rad). Keeps what was learned.
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
         knot_ns_ = time_ns;
         tick_ = 0;
@@ -121,9 +119,9 @@ class FeedForward {
     /// Returns whether the learned part is included. Initially true.
     [[nodiscard]] bool enabled() const noexcept { return enabled_; }
 
-    /// Returns the feed-forward torque of this tick, N·m, for the present `reference` and `nominal` torque (n
-    /// values, N·m; zeros without a model). In place of a nominal torque that is NaN or infinite, the joint's
-    /// last finite one is used, because 0 would be a step; before the first one it is 0.
+    /// Returns the feed-forward torque of this tick, n values, N·m, within ± `limit`. `nominal`: torque of
+    /// your own model for the present `reference`, n values, N·m; zeros without a model. A NaN or infinite
+    /// one is replaced by the joint's last finite one, to avoid a step; by 0 before the first.
     const Torques& update(const Reference<Scalar, n>& reference, const Scalar* nominal) noexcept {
         const int since_knot = static_cast<int>(tick_++ % settings_.ticks_per_sample);
         if (since_knot == 0) {
@@ -149,8 +147,8 @@ class FeedForward {
     }
 
     /// Compares the forecasts with the torque commanded in this tick (n values, N·m). Call it after `update`.
-    /// Do not call it if the command is not the torque that the motion needs: at a limit, or while positions
-    /// are missing. NaN or infinite values are not compared.
+    /// Do not call it if the command differs from the torque that the motion requires: at a limit, or while
+    /// positions are missing. If any value is NaN or infinite, nothing is compared in this tick.
     void commanded(const Scalar* torque) noexcept {
         if (!at_knot_ || !known_ || !next_known_) {
             return;
@@ -175,7 +173,7 @@ class FeedForward {
     /// Passes the newest measured position (n values, rad) and the torque that was in effect at that time (n
     /// values, N·m); nullptr if unknown. Call it in every tick, after `update`: a sample is taken at each
     /// knot, and learning continues between knots. `time_ns`: stamp of the measurement, by the clock of
-    /// `begin`, with as much jitter as `SampleClock` allows.
+    /// `begin`; `SampleClock` documents the permitted jitter.
     void measured(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
         if (at_knot_ && position != nullptr) {
             learner_->learn(time_ns, position, torque);
@@ -187,10 +185,10 @@ class FeedForward {
     /// Returns the share of the learned forecast in each joint's torque, 0 … 1.
     [[nodiscard]] const Torques& share() const noexcept { return share_; }
 
-    /// Combines other forecasts (`forecast_count()` times n values, one forecast after the other) with
-    /// another `nominal` torque (n values, N·m) into n torques, as the present command combines its own and
-    /// with the same share: for example those of the arm at rest, to hold it after a stop. Unknown forecasts
-    /// are NaN; without a known one the result is the nominal torque.
+    /// Combines other forecasts (`forecast_count()` × n values, N·m) and another `nominal` torque (n values,
+    /// N·m) with the present weights and shares into `torque` (n values, N·m). Example: forecasts for the arm
+    /// at rest, to hold it after a stop. Unknown forecasts are NaN; without a known one the result is the
+    /// nominal torque.
     void combine(const Scalar* other, const Scalar* nominal, Scalar* torque) const noexcept {
         for (int k = 0; k < joints_; ++k) {
             const Scalar known_nominal = bounded(nominal[k], settings_.limit[k]);
@@ -204,8 +202,8 @@ class FeedForward {
     /// Returns the learner, for its counters and snapshots.
     [[nodiscard]] const Learner& learner() const noexcept { return *learner_; }
 
-    /// Returns the most multiply-adds of `update` and `commanded` in a tick, without the learner's.
-    /// `at_knot`: in a tick with a knot; otherwise between knots.
+    /// Returns the maximum multiply-adds of `update` and `commanded` in a tick, without the learner's.
+    /// `at_knot`: true for a tick with a knot, false between knots.
     [[nodiscard]] std::int64_t cost(bool at_knot) const noexcept {
         const std::int64_t of_learner = from_.size();
         const std::int64_t between = 1 + 10 * joints_ + 6 * of_learner;
@@ -240,15 +238,15 @@ class FeedForward {
         next_known_ = learner_->predict(knot_ns_, ahead_.data(), to_.data());
     }
 
-    /// What the known ones of a joint's forecasts give.
+    /// Combination of the known forecasts of a joint.
     struct Learned {
-        Scalar torque; ///< their combination
-        Scalar earned; ///< their share beside the nominal torque
+        Scalar torque; ///< N·m
+        Scalar earned; ///< share by the comparison, 0 … 1; the rest is the nominal torque's
         bool complete; ///< all forecasts are known
     };
 
-    /// Combines the finite ones of joint `k`'s forecasts `value(i)`. In place of unknown ones each has the
-    /// weight that it earned beyond the nominal torque: none, if it was no better.
+    /// Combines the finite forecasts `value(i)` of joint `k`. If any is unknown, each of the others has the
+    /// excess of its weight over the nominal torque's, at least 0.
     template <class Value>
     [[nodiscard]] Learned combined(int k, const Value& value) const noexcept {
         const Scalar* const weights = combination_.weights();
@@ -273,14 +271,14 @@ class FeedForward {
         return total > 0 ? Learned{sum / total, total / (total + weights[k]), false} : Learned{0, 0, false};
     }
 
-    /// Returns what `learned` adds to joint `k`'s nominal torque. The share rises and falls slowly, but
-    /// forecasts in place of unknown ones have at once no more than they earned.
+    /// Returns the torque that `learned` adds to joint `k`'s nominal torque. The share changes slowly. If
+    /// forecasts are unknown, it is limited at once to what the known ones earned.
     [[nodiscard]] Scalar added(int k, const Learned& learned, Scalar nominal) const noexcept {
         const Scalar share = learned.complete ? share_[k] : std::min(share_[k], learned.earned);
         return share * bounded(learned.torque - nominal, settings_.cap[k]);
     }
 
-    /// Moves the forecasts' shares within the learned part of joint `k` towards those that they earned.
+    /// Moves the forecasts' shares within the learned part of joint `k` towards their weights.
     void mix(int k) noexcept {
         const Scalar* const earned = combination_.weights() + joints_;
         Scalar total = 0;
@@ -315,11 +313,11 @@ class FeedForward {
     [[no_unique_address]] Extent<forecasts> forecast_count_;
     bool settings_valid_;
     Settings settings_;
-    int judged_for_; ///< knots with a comparison until the learner is used
+    int judged_for_; ///< number of compared knots before the learner is used
     Combination combination_;
     Compared compared_;     ///< torques of the present knot: the nominal ones, then the forecasts
-    Compared slow_, error_; ///< their errors, low-pass filtered, and as they are compared
-    Torques followed_;      ///< share of an error that its slow part follows in a sample period
+    Compared slow_, error_; ///< their errors: low-pass filtered, and as compared
+    Torques followed_;      ///< gain of the low-pass filter per sample period
     Forecasts from_, to_;   ///< forecasts for the present and for the next knot
     Forecasts mix_;         ///< shares of the forecasts in the learned part
     Torques ahead_;

@@ -23,11 +23,11 @@ struct FeedForwardSettings {
     Scalar rise_s = Scalar(0.5); ///< time in which the learned share rises from 0 to 1, s, > 0
     Scalar fall_s = Scalar(0.2); ///< time in which it falls from 1 to 0, s, > 0
     Scalar memory_s = 1;         ///< memory of the comparison, from one to 10⁹ sample periods
-    /// Weight of the error that the observer takes over, 0 … 1. Chosen on the iCub's arm with tripled
-    /// friction and on motions of both arms that stop and go: 0 suits these, 1 the former.
+    /// Weight of the error that the observer compensates, 0 … 1. A compromise between two cases: 0 is best
+    /// for stop-and-go motions (both arms), 1 for tripled friction (the iCub's arm).
     Scalar slow_share = Scalar(0.3);
     Torques bandwidth{};      ///< of the disturbance observer, rad/s, ≥ 0; 0: none
-    Torques observer_limit{}; ///< of its estimate, N·m, ≥ 0; 0: it takes over nothing
+    Torques observer_limit{}; ///< of its estimate, N·m, ≥ 0; 0: it compensates nothing
 
     /// Returns the sample period of the model, s.
     [[nodiscard]] constexpr Scalar sample_period_s() const noexcept {

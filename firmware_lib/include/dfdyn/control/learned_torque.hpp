@@ -11,9 +11,10 @@
 
 namespace dfdyn {
 
-/// Inverse dynamics learned while the arm moves and evaluated at the reference: learns from windows of
-/// measured positions and predicts for a window of reference positions. The prediction of an `Estimator`
-/// alone is for the *measured* motion; as feed-forward it would be positive feedback of the position error.
+/// Inverse dynamics that is learned while the arm moves and evaluated at the reference: it learns from
+/// windows of measured positions and predicts for a window of reference positions. An `Estimator` alone
+/// predicts for the *measured* motion; as feed-forward its prediction would be positive feedback of the
+/// position error.
 ///
 /// In addition to the estimator it contains a second window with its columns, and a copy of the learned
 /// weights that is updated after each learned sample: 2d m + p scalars and the windows, but no second
@@ -47,8 +48,8 @@ class LearnedTorque {
     /// Returns the number of forecasts, 1.
     [[nodiscard]] static constexpr Extent<forecasts> forecast_count() noexcept { return {}; }
 
-    /// Empties the measured motion's window, and fills the reference's as if it had rested at `position` (n
-    /// values, rad) until now. What has been learned stays.
+    /// Starts a motion at `time_ns`: empties the window of the measured motion and fills the window of the
+    /// reference with `position` (n values, rad), as if at rest until now. Keeps what was learned.
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
         estimator_.restart_window();
         columns_.restart();
@@ -57,8 +58,8 @@ class LearnedTorque {
         }
     }
 
-    /// Begins to learn a sample: the measured `position` (n values, rad) and the torque that moved the arm
-    /// there (N·m), or nullptr if unknown. Faulty samples are refused as in `Estimator::tick`.
+    /// Begins to learn a sample: the measured `position` (n values, rad) and the torque that was in effect (n
+    /// values, N·m; nullptr if unknown). Returns the status of `Estimator::tick`, which may refuse it.
     Status learn(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
         sample_.time_ns = time_ns;
         sample_.output_valid = torque != nullptr;
@@ -78,11 +79,11 @@ class LearnedTorque {
         take_over_when_done();
     }
 
-    /// Predicts the torque of the reference one sample period after the last call, N·m, for the reference's
-    /// `position` at that time, rad. Returns false and writes zeros while the window fills, if the input is
-    /// out of range, or beyond the model's limits. Away from the data the prediction does not fade out as in
-    /// an `Estimate`, because no variance is computed; `FeedForward` compares its quality with that of the
-    /// nominal torque. A NaN or infinite position restarts the reference's window.
+    /// Predicts the torque (n values, N·m) at the reference's `position` (n values, rad), one sample period
+    /// after the last call. Returns false and writes zeros while the window fills, if the input is out of
+    /// range, or if the prediction exceeds the model's limits. A NaN or infinite position restarts the
+    /// window. No variance is computed, so away from the data the prediction does not fade out as in an
+    /// `Estimate`; `FeedForward` compares it with the nominal torque instead.
     bool predict(std::int64_t time_ns, const Scalar* position, Scalar* torque) noexcept {
         bool known = true;
         for (int k = 0; k < output_count(); ++k) {
@@ -108,7 +109,7 @@ class LearnedTorque {
         return known;
     }
 
-    /// See `Estimator::relearn`: for an arm that is another than that of the training, or has changed.
+    /// See `Estimator::relearn`: for an arm that has changed or differs from that of the training.
     void relearn() noexcept { estimator_.relearn(); }
 
     /// Returns to the initial state of the model.
@@ -156,8 +157,8 @@ class LearnedTorque {
     /// Maximum window length of any model, in samples; bounds a loop.
     static constexpr int longest_window = 4096;
 
-    /// Returns the budget per tick that suffices to learn a sample in `ticks` slices. Each slice may leave as
-    /// much unused as is too little for the next step.
+    /// Returns the budget per tick that suffices to learn a sample in `ticks` slices. Each slice may leave a
+    /// remainder that is too small for the next step.
     static constexpr Budget share_of(const typename Model::Sizes& sizes, int ticks) noexcept {
         const Cost cost = Estimator::cost(sizes);
         return {(cost.learn + cost.forget + ticks - 1) / ticks + cost.largest_step};

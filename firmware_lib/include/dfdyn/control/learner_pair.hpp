@@ -10,10 +10,9 @@
 
 namespace dfdyn {
 
-/// Two learners of the same joints as one `TorqueLearner` with the forecasts of both, among which
-/// `FeedForward` chooses. For example, model SPK with a memory of many seconds, and model P with a memory of
-/// a second and an innovation patience of 0: P is right soon after a change of the arm, SPK is better in
-/// between.
+/// Two learners of the same joints as one `TorqueLearner` with the forecasts of both, which `FeedForward`
+/// weights. Example: model SPK with a memory of many seconds, and model P with a memory of a second and an
+/// innovation patience of 0. P adapts quickly to a change of the arm; SPK is more accurate otherwise.
 ///
 /// Refers to both learners, which must outlive it and have the same sample period. Either may be a pair
 /// itself. The cost of a tick is the sum of both. Never allocates.
@@ -41,7 +40,7 @@ class LearnerPair {
         first_->begin(time_ns, position);
         second_->begin(time_ns, position);
     }
-    /// See `LearnedTorque::learn`; the counters of the learners show what was refused.
+    /// See `LearnedTorque::learn`. The learners' counters contain the refused samples.
     void learn(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
         first_->learn(time_ns, position, torque);
         second_->learn(time_ns, position, torque);
@@ -52,8 +51,8 @@ class LearnerPair {
         second_->go_on();
     }
 
-    /// Writes the forecasts of both, `forecast_count()` times n torques. Those of a learner without a
-    /// prediction are NaN. Returns false if neither has one.
+    /// Writes the forecasts of both, `forecast_count()` × n torques, N·m; NaN for a learner without a
+    /// prediction. Returns false if neither has one. Arguments: see `LearnedTorque::predict`.
     bool predict(std::int64_t time_ns, const Scalar* position, Scalar* torque) noexcept {
         const int size = first_->forecast_count() * output_count();
         const int second_size = second_->forecast_count() * output_count();

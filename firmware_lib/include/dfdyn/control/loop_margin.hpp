@@ -9,17 +9,17 @@
 
 namespace dfdyn {
 
-/// One joint under proportional-derivative feedback, as described for a stability analysis.
+/// One joint under proportional-derivative feedback, for a stability analysis.
 template <class Scalar>
 struct JointLoop {
     Scalar inertia;       ///< of the arm at this joint, kg·m²; > 0
     Scalar position_gain; ///< N·m/rad; > 0
     Scalar velocity_gain; ///< N·m·s/rad; ≥ 0
-    Scalar delay_s;       ///< from a position to the torque that reacts to it, including half a tick of hold
-    Scalar velocity_delay_s; ///< additional delay of the velocity: half the length of its window
+    Scalar delay_s;       ///< from a position to the resulting torque, including half a tick of hold; ≥ 0
+    Scalar velocity_delay_s; ///< additional delay of the velocity: half the length of its window; ≥ 0
 };
 
-/// Phase margin of such a joint with a `DisturbanceObserver`, from its open loop
+/// Phase margin of such a joint with a `DisturbanceObserver`. The open loop is
 ///
 ///     L(s) = e^(-s delay) [P (1 + b/s) + (D (1 + b/s) + b J) s e^(-s velocity delay)] / (J' s²)
 ///

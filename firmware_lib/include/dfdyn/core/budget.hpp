@@ -8,8 +8,8 @@
 
 namespace dfdyn {
 
-/// How much learning one tick may do, in multiply-adds. One product or quotient, with the sum that follows
-/// it, counts as one. A square root, exponential, logarithm or hyperbolic tangent counts as `function_cost`.
+/// Upper bound on the learning work of one tick, in multiply-adds. One product or quotient, with the sum that
+/// follows it, counts as one. A square root, exponential, logarithm or tanh counts as `function_cost`.
 /// The costs of all parts are constant expressions of the sizes (`Estimator::cost()`), so a control loop can
 /// assign a share of its period to learning.
 struct Budget {
@@ -42,7 +42,7 @@ inline constexpr int function_cost = 30;
 struct Cost {
     /// Input, features, weights and estimate: maximum over all ticks, reached with a measurement.
     std::int64_t predict;
-    /// A separate computation of the variance, in ticks that do not learn their own sample at once: maximum,
+    /// Variance, if it is computed separately: in ticks that do not learn their own sample at once. Maximum,
     /// reached while an earlier sample is being learned.
     std::int64_t variance;
     std::int64_t learn;  ///< learning one sample, without forgetting
@@ -56,10 +56,9 @@ struct Cost {
 
 /// Maximum stack bytes for the registers that the calls of one part save.
 ///
-/// The bytes of stack that depend on sizes are the data that the code keeps there. The constants added to
-/// them were measured with g++ 12 -O3 on the Cortex-M and rounded up;
-/// tests/cortex_m/images/parts.cpp checks every part against them. The frame that an interrupt
-/// pushes is not included.
+/// The size-dependent stack bytes are counted from the data that the code keeps there. The constants added to
+/// them were measured with g++ 12 -O3 on the Cortex-M and rounded up; tests/cortex_m/images/parts.cpp checks
+/// every part. The frame that an interrupt pushes is not included.
 inline constexpr std::int64_t frame_bytes = 128;
 
 /// Memory of an estimator, in bytes.

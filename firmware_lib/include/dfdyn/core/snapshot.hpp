@@ -50,8 +50,8 @@ namespace detail {
 
 /// Visitors of a state. A state lists its parts once, in `visit_state`: each array, and each index with its
 /// range. The visitors measure a snapshot, write it, check it completely before anything is changed, and read
-/// it. Before many small parts a state can ask whether the visitor skips all of them (`skips<T>(count)`, with
-/// their total number of values of type T).
+/// it. `skips<T>(count)` returns true if the visitor skips the next `count` values of type T, so that a state
+/// need not visit many small parts one by one.
 class SnapshotMeasure {
   public:
     template <class T>
@@ -210,7 +210,8 @@ inline SnapshotHeader snapshot_header(std::uint32_t model, std::size_t bytes) no
 
 } // namespace detail
 
-/// Writes `state`, marked with the identity of its model, to the front of `buffer`. O(bytes).
+/// Writes `state`, marked with the identity of its model, to the front of `buffer`. Returns `wrong_size` if
+/// the buffer is smaller than `snapshot_bytes(state)`. O(bytes).
 template <class State>
 SnapshotResult write_snapshot(const State& state, std::uint32_t model, std::span<std::byte> buffer) noexcept {
     const std::size_t bytes = snapshot_bytes(state);

@@ -17,9 +17,9 @@ namespace dfdyn {
 ///
 /// From the construction of the writer until the last part of the state is copied, the estimator predicts in
 /// every tick but does not learn. Its samples are counted as `Reason::learning_held`; a half-learned sample
-/// is finished afterwards. All pieces therefore belong to the same state. The alternatives cost more: copying
-/// within the ticks would charge every tick for an event that happens once a day, and learning during the
-/// copy would need a second state in memory.
+/// is finished afterwards. All pieces therefore belong to the same state. The alternatives cost more: a copy
+/// within the ticks would load every tick for a rare event, and learning during the copy would need a second
+/// state in memory.
 ///
 /// The pause is bounded: after `max_held_ticks` ticks learning continues in any case, and the unfinished
 /// snapshot is refused as `changed`. The same holds if the estimator was reset or restored during the copy.
@@ -71,7 +71,7 @@ class SnapshotWriter {
         return result_;
     }
 
-    /// Returns `in_progress`, `ok` after the whole snapshot is written, or the reason why there is none.
+    /// Returns `in_progress`, `ok` after the whole snapshot is written, or the reason of the failure.
     [[nodiscard]] SnapshotResult result() const noexcept { return result_; }
     /// Returns the size of the whole snapshot, in bytes.
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }

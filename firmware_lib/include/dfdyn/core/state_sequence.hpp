@@ -13,8 +13,8 @@ namespace dfdyn {
 /// change and a different even number afterwards, so that a copy during which the state changed is detected
 /// and refused. A sequence lock alone would refuse every copy: a learner that learns in every tick leaves no
 /// pause as long as a copy takes. The copying context can therefore request a hold, during which the ticking
-/// context changes nothing. A hold expires after a number of ticks, so that a copying task that died does not
-/// stop learning forever; the sequence then advances, and the late copy is refused.
+/// context changes nothing. A hold expires after a number of ticks, so that a copying task that has crashed
+/// does not stop learning forever; the sequence then advances, and a late copy is refused.
 ///
 /// Neither context waits, and no interrupt is masked. Each variable is written by one context only, with
 /// 32-bit loads and stores; no read-modify-write is needed, which a Cortex-M0 lacks. The handshake at the
@@ -25,7 +25,7 @@ namespace dfdyn {
 class StateSequence {
   public:
     StateSequence() noexcept = default;
-    /// Starts without a hold, whatever the other has.
+    /// Starts without a hold, even if the other has one.
     StateSequence(const StateSequence& /*other*/) noexcept {}
     /// Assignment overwrites the state, so a copy in progress detects a change.
     StateSequence& operator=(const StateSequence& other) noexcept {

@@ -8,7 +8,7 @@
 namespace dfdyn {
 
 /// Reason why a tick did not predict or did not learn. Below 32: limits; the data are valid. From 32: faults
-/// of the sample, which was refused. The numbers are stable.
+/// of the sample, which was refused, or of the learned state. The numbers are stable.
 enum class Reason : std::uint8_t {
     ok = 0,
 

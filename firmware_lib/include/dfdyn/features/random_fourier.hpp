@@ -26,8 +26,8 @@ struct RandomFourier {
         Scalar amplitude; ///< 1/√d
     };
 
-    /// Writes φ (2d values). Returns false, with φ undefined, if an argument is not finite or exceeds
-    /// `largest_cos_sin_argument`.
+    /// Writes φ (2d values) of `xi` (one value per input). Returns false, with φ undefined, if an argument is
+    /// not finite or exceeds `largest_cos_sin_argument`.
     template <class Scalar, int inputs>
     static bool evaluate(const Constants<Scalar, inputs>& constants, Extent<inputs> input_count,
                          Extent<d> feature_count, const Scalar* xi, Scalar* phi) noexcept {
@@ -48,13 +48,13 @@ struct RandomFourier {
         return std::int64_t{feature_count} * input_count + cos_sin_cost<Scalar>(feature_count);
     }
 
-    /// Of `evaluate`.
+    /// Returns the maximum stack bytes of `evaluate`.
     template <class Scalar>
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
         return frame_bytes + cos_sin_bytes<Scalar>;
     }
 
-    /// Of the constants; a feature map has no state.
+    /// Returns the bytes of the constants; a feature map has no state.
     template <class Scalar>
     [[nodiscard]] static constexpr std::int64_t constant_bytes(int input_count, int feature_count) noexcept {
         return storage_bytes<Scalar>(std::int64_t{input_count} * feature_count);

@@ -83,7 +83,7 @@ struct DerivativeFreeReduced {
             return LagWindow<Scalar, n, M>::state_bytes(joints, lag_count);
         }
 
-        /// Of `push` and `evaluate`.
+        /// Returns the maximum stack bytes of `push` and `evaluate`.
         [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept { return frame_bytes; }
 
       private:

@@ -77,7 +77,7 @@ struct Standard {
                    storage_bytes<Scalar>(lag_count + 1);
         }
 
-        /// Of `push` and `evaluate`, which compare two polynomials.
+        /// Returns the maximum stack bytes of `push` and `evaluate`, which compare two polynomials.
         [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
             return frame_bytes + 2 * AdaptiveWindow<Scalar>::fit_bytes;
         }
@@ -144,7 +144,7 @@ struct StandardMeasured {
             return storage_bytes<Scalar>(std::int64_t{3} * joints);
         }
 
-        /// Of `push` and `evaluate`.
+        /// Returns the maximum stack bytes of `push` and `evaluate`.
         [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept { return frame_bytes; }
 
       private:

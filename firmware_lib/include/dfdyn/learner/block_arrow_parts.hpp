@@ -87,7 +87,7 @@ class BlockArrowFootprint {
                2 * residual;
     }
 
-    /// Maximum over all calls.
+    /// Returns the maximum stack bytes over all calls.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
         return frame_bytes + 76 * std::int64_t{sizeof(Scalar)};
     }

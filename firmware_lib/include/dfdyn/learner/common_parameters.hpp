@@ -114,7 +114,7 @@ class CommonParameters {
                storage_bytes<Scalar>(std::int64_t{outputs} * parameters) + 2 * storage_bytes<Scalar>(outputs);
     }
 
-    /// Maximum over all calls.
+    /// Returns the maximum stack bytes over all calls.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
         return frame_bytes + UdCovariance<Scalar, p, 1>::stack_bytes();
     }

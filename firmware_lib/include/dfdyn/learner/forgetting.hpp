@@ -16,10 +16,10 @@ namespace dfdyn {
 /// at standstill (covariance wind-up). Forgetting is therefore paid from an account: each sample pays in
 /// `payback` times the information log(1 + φ'Pφ) that it contributed, and forgetting is reduced to what the
 /// account covers. While the motion excites at least 1/`payback` of the parameters, λ is applied exactly. A
-/// standstill excites as many directions as a sample has rows. So that these do not pay for all other
-/// directions, `payback` is 20 but at most half of the parameters per row (and at least 1), and forgetting
-/// stops by itself. The learner bounds the remaining growth: per sample it checks the variance of one
-/// parameter and reduces it to the prior's.
+/// standstill excites only as many directions as a sample has rows. `payback` is 20 but at most half of the
+/// parameters per row (and at least 1): these directions then cannot pay for all others, and forgetting
+/// stops. The learner bounds the remaining growth: per sample it checks the variance of one parameter and
+/// reduces it to the prior's if it is larger.
 ///
 /// A row that repeats forever contributes φ'Pφ = (1-λ)/λ under forgetting with λ, and less once the account
 /// limits forgetting. A sample that contributes less than 1-λ per row is therefore attributed to a standstill
@@ -32,9 +32,9 @@ namespace dfdyn {
 /// forever.
 ///
 /// While the account is empty and samples pay nothing, the arm is `resting`: rows are still learned, but the
-/// covariance stays as it is. Otherwise it would shrink along the row as 1/t, until in float only U still
-/// changed and D no longer did, and the directions that the row does not determine would grow. A target that
-/// changes at rest is thus followed within the memory, however long the rest has been.
+/// covariance stays as it is. Otherwise it would shrink along the row as 1/t. In float D would then stop
+/// changing while U still did, and the variance of the other directions would grow. A target that changes at
+/// rest is thus tracked within the memory, even after a long rest.
 ///
 /// A moving arm forgets with λ as long as one row in `payback` contributes more than both limits. If the
 /// memory is much longer than p / (1024 ε) samples (8000 p in float, 4·10¹² p in double), no row does, and
@@ -65,8 +65,8 @@ class Forgetting {
         next_parameter_ = 0;
     }
 
-    /// Returns the factor to apply after a sample with predictive variance `ratio` = 1 + φ'Pφ, in units of
-    /// the noise variance.
+    /// Returns the factor to apply, 0 < factor ≤ 1, after a sample with predictive variance `ratio` = 1 +
+    /// φ'Pφ ≥ 1, in units of the noise variance.
     [[nodiscard]] Scalar factor_after(Scalar ratio) noexcept {
         if (!active()) {
             return 1;
@@ -86,7 +86,7 @@ class Forgetting {
         return affordable;
     }
 
-    /// Returns whether the last sample paid nothing although the account was empty: the arm rests.
+    /// Returns whether the account is empty and the last sample paid nothing: the arm is at rest.
     [[nodiscard]] constexpr bool resting() const noexcept { return resting_ != 0; }
 
     /// Maximum multiply-adds of `factor_after`.

@@ -16,9 +16,9 @@ namespace dfdyn {
 /// it is done, the weights and `variance` are those before the row.
 ///
 /// After t rows, a row changes the weights by about 1/t of the change by the first row. In float this soon
-/// falls below half of the last digit; the change would be lost, always where P is largest, and the weights
-/// would drift. The sum is therefore compensated (`detail::add_compensated`): the rounding error is added
-/// with the next row. Memory about p²/2 + (2m+3) p scalars.
+/// falls below half a unit in the last place. The change would be lost, always where P is largest, and the
+/// weights would drift. The sum is therefore compensated (`detail::add_compensated`): the rounding error is
+/// added with the next row. Memory about p²/2 + (2m+3) p scalars.
 template <class Scalar, int p, int m>
 class UdCovariance {
   public:
@@ -143,7 +143,7 @@ class UdCovariance {
                storage_bytes<Scalar>(outputs);
     }
 
-    /// Maximum over all calls.
+    /// Returns the maximum stack bytes over all calls.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
         return frame_bytes + 32 * std::int64_t{sizeof(Scalar)};
     }

@@ -124,7 +124,8 @@ class UdFactor {
     /// Returns the row of the present or last sweep, p values.
     [[nodiscard]] const Scalar* row() const noexcept { return row_.data(); }
 
-    /// After a sweep: `alpha` is the noise variance + h'Ph, and `gain` is alpha times the gain, p values.
+    /// Results of a completed sweep: `alpha` is the noise variance + h'Ph, `gain` is alpha times the gain, p
+    /// values.
     [[nodiscard]] Scalar alpha() const noexcept { return alpha_; }
     [[nodiscard]] const Scalar* gain() const noexcept { return gain_.data(); }
 
@@ -206,7 +207,7 @@ class UdFactor {
         return storage_bytes<Scalar>(panels_size(columns)) + 3 * storage_bytes<Scalar>(padded(columns));
     }
 
-    /// By columns, so that a snapshot does not depend on the machine's layout.
+    /// Visits the factor by columns, so that a snapshot does not depend on the machine's layout.
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         for (int j = 1; j < self.columns_; ++j) {
@@ -226,7 +227,7 @@ class UdFactor {
     }
 
   private:
-    /// What the present sweep does to the covariance.
+    /// Effect of the present sweep on the covariance.
     enum class Sweep : int { none, fold, keep };
 
     static constexpr int width = detail::panel_width;
