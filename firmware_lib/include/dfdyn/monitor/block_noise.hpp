@@ -30,11 +30,12 @@ struct SpeedClasses {
     }
 };
 
-/// Estimates the scale and the first-order autocorrelation of one output's block means while no change is on.
+/// Estimates the scale and the first-order autocorrelation of one output's block means in the absence of a
+/// change.
 ///
-/// At low speed stiction makes the residual of a joint torque several times larger than in motion, and slow.
-/// So both are estimated separately for each class of the joint's speed. Within a class the whitened block
-/// means are nearly Gaussian.
+/// At low speed stiction makes the residual of a joint torque several times larger than in motion, and
+/// slower. Both are therefore estimated separately for each class of the joint's speed. Within a class the
+/// whitened block means are nearly Gaussian.
 ///
 /// The scale s is Huber's: s² solves E[min(x², c² s²)] = κ s² with c = 2.5 and κ for Gaussian noise (P. J.
 /// Huber, "Robust Statistics", 1981, proposal 2). It is insensitive to bursts. It starts with the smallest
@@ -53,8 +54,8 @@ class BlockNoise {
     /// `least_scale`: lower bound of the scales.
     explicit BlockNoise(Scalar least_scale) noexcept : least_(least_scale * least_scale) {}
 
-    /// Adds a block mean of speed class `c` and the one before it, of class `before` (-1: none). Values that
-    /// are not finite are ignored.
+    /// Adds a block mean of speed class `c`, 0 … 2, and its predecessor of class `before` (-1: none). Ignores
+    /// values that are not finite.
     void learn(Scalar block, Scalar block_before, int c, int before) noexcept {
         if (!std::isfinite(block) || !std::isfinite(block_before)) {
             return;

@@ -37,9 +37,9 @@ inline constexpr int departure_count = 6;
 ///
 /// The threshold of each kind follows from its own excursions (`FalseAlarmThreshold`). All kinds together
 /// exceed their thresholds at most once in `blocks_between_false_alarms` while the innovations are
-/// stationary. The onset is the block in which the sum of the alarm last left zero. The alarm ends when every
-/// sum is below half its threshold: the change was learned or has passed. `nothing_happened` reports a false
-/// alarm.
+/// stationary. The onset is the block in which the sum that raised the alarm last left zero. The alarm ends
+/// when every sum is below half its threshold: the change was learned or has passed. `nothing_happened`
+/// reports a false alarm.
 ///
 /// Cost per block: `cost(m)`. Memory: about 55 m numbers.
 template <class Scalar, int m>
@@ -57,12 +57,13 @@ class ChangeDetector {
     static constexpr Scalar level_scale = Scalar(1. / 3);
     static constexpr Scalar change_scale = Scalar(0.1);
     static constexpr Scalar least_range = Scalar(0.1); ///< smallest maximum, in predicted deviations
-    /// Factor between the specified rate of false alarms and the rate that the thresholds are for: the tails
+    /// Ratio of the specified rate of false alarms to the rate for which thresholds are computed: the tails
     /// of the sums of real arms are heavier than exponential (measured, docs/guide/monitor.md).
     static constexpr Scalar caution = 20;
 
-    /// `friction`: true if outputs are joint torques. `blocks_between_false_alarms` > 1: their mean distance.
-    /// `least_scale`: lower bound of the usual scale of block means, in predicted deviations.
+    /// `friction`: true if outputs are joint torques. `blocks_between_false_alarms` > 1: mean number of
+    /// blocks between them. `least_scale`: lower bound of the usual scale of block means, in predicted
+    /// deviations.
     ChangeDetector(Extent<m> outputs, bool friction, Scalar blocks_between_false_alarms,
                    Scalar least_scale = Scalar(1e-6)) noexcept
         : outputs_(outputs), has_friction_(friction),
@@ -74,8 +75,8 @@ class ChangeDetector {
         set_limits();
     }
 
-    /// Adds the next block, and the one before it (null after a gap); m values each. Returns true during an
-    /// alarm.
+    /// Adds the next block and its predecessor (null after a gap), m values each. Returns true during an
+    /// alarm. Cost: `cost`.
     bool add(const Block* now, const Block* before, const SpeedClasses<Scalar>& speed) noexcept {
         Shared shared;
         for (int k = 0; k < outputs_; ++k) {
@@ -116,7 +117,7 @@ class ChangeDetector {
         }
     }
 
-    /// Accepts the present innovations as the usual ones: learns noise and ranges again.
+    /// Accepts the present innovations as usual: learns noise and ranges again.
     void adopt() noexcept {
         for (BlockNoise<Scalar>& noise : noise_) {
             noise.relearn();
@@ -128,13 +129,13 @@ class ChangeDetector {
         restart();
     }
 
-    /// Adds the excursion of the last alarm to the usual ones: it was a false alarm.
+    /// Reports that the last alarm was false: its excursion is added to the usual ones.
     void nothing_happened() noexcept {
         FalseAlarmThreshold<Scalar>& tail = tails_[static_cast<int>(departure())];
         tail.add(limits_[static_cast<int>(departure())]);
     }
 
-    /// Multiply-adds of `add`, at most.
+    /// Returns the maximum multiply-adds of `add`.
     static constexpr std::int64_t cost(int outputs) noexcept {
         const std::int64_t limits = std::int64_t{departure_count} * FalseAlarmThreshold<Scalar>::limit_cost;
         return limits + outputs * (BlockNoise<Scalar>::cost + function_cost + 66) +
@@ -277,7 +278,7 @@ class ChangeDetector {
 
     void decide() noexcept {
         if (settled_ < settling_blocks && ++settled_ == settling_blocks) {
-            restart(); // the first sums were of unknown noise
+            restart(); // the noise of the first sums was unknown
         }
         if (alarm_) {
             ++since_onset_;

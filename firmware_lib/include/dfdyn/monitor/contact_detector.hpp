@@ -10,18 +10,17 @@
 
 namespace dfdyn {
 
-/// Detects contacts from the errors of predicted joint torques or motor currents, within some 0.1 s.
+/// Detects contacts from the errors of predicted joint torques or motor currents, within about 0.1 s.
 ///
-/// A contact begins when the excess reaches 1: the fourth root of the sum of the fourth powers of all
-/// deviations (JointDeviation) in units of their limits. It is close to the largest one, and larger if
-/// several joints deviate. Beyond the speeds and accelerations of the training, the limits of all joints grow
-/// in proportion to the largest ratio, at most `most_range`, and decrease again within
-/// `JointDeviation::range_s`.
+/// A contact begins when the *excess* reaches 1. The excess is the 4-norm of all deviations (JointDeviation)
+/// relative to their limits: close to the largest one, and larger if several joints deviate. Beyond the
+/// speeds and accelerations of the training, all limits grow in proportion to the largest ratio, by at most
+/// the factor `most_range`. They decrease again with the time constant `JointDeviation::range_s`.
 ///
 /// A contact ends when for `release_s` the excess has been below `release`, or the deviation of its joint
-/// below `release_share` of its largest value. So a push after another one is a contact of its own where the
-/// model's error remains. After `longest_s` it ends as a change of the arm: the errors at that time become
-/// the baseline. The first `settling_s` after an interruption or a gap of `longest_gap_s` have no contact.
+/// below `release_share` of its largest value. The second condition separates consecutive pushes while a
+/// model error remains. After `longest_s` it ends as a change of the arm: the errors at that time become the
+/// baseline. No contact begins within `settling_s` after an interruption or a gap over `longest_gap_s`.
 ///
 /// It is a detector, not a safety function: contacts below the limits or slower than the baseline are not
 /// detected. docs/guide/contacts.md lists the recordings that chose the constants. Use in each tick:
@@ -36,21 +35,21 @@ namespace dfdyn {
 ///         detector.interrupt();
 ///     }
 ///
-/// Not with `Estimate::innovation`, which is 0 for an output beyond the model's limit: the hardest
-/// collisions. If it is interrupted during a contact, the present push becomes the baseline afterwards.
-/// `joints` positions, errors and predictions, in the same order. No heap. Cost: `cost` per joint and tick,
+/// Do not use `Estimate::innovation`: it is 0 for an output beyond the model's limit, as in the hardest
+/// collisions. After an interruption during a contact, the push that remains becomes the baseline. Positions,
+/// errors and predictions have `joints` values in the same order. No heap. Cost: `cost` per joint and tick,
 /// and four exponentials. Memory: 18 numbers per joint.
 template <class Scalar, int joints>
 class ContactDetector {
   public:
     static constexpr Scalar release = Scalar(0.75);      ///< of `excess()`: below it a contact may end
-    static constexpr Scalar release_share = Scalar(0.5); ///< of a contact's largest deviation: the same
+    static constexpr Scalar release_share = Scalar(0.5); ///< same, of a contact's largest deviation
     static constexpr Scalar release_s = Scalar(0.1);     ///< time below either that ends a contact, s
-    static constexpr Scalar longest_s = 3;               ///< of a contact; then it is a change of the arm, s
-    static constexpr Scalar longest_gap_s = Scalar(0.1); ///< between two stamps; a longer one interrupts, s
+    static constexpr Scalar longest_s = 3;               ///< longest contact, s; then a change of the arm
+    static constexpr Scalar longest_gap_s = Scalar(0.1); ///< between two stamps, s; a longer one interrupts
     static constexpr Scalar settling_s = Scalar(0.5);    ///< after an interruption without contacts, s
-    static constexpr Scalar most_range = 20; ///< so that an encoder's jump blinds for a second only
-    static constexpr int cost = 40;          ///< multiply-adds per joint of `tick`, at most
+    static constexpr Scalar most_range = 20; ///< an encoder's jump then masks contacts for a second only
+    static constexpr int cost = 40;          ///< maximum multiply-adds of `tick` per joint
 
     /// `limits`: one per joint; kept by reference.
     ContactDetector(Extent<joints> count, const ContactLimits<Scalar>* limits) noexcept
@@ -96,7 +95,7 @@ class ContactDetector {
     void interrupt() noexcept {
         running_ = false;
         contact_ = false;
-        excess_ = 0; // nothing is suspected of what is not compared, or the learner would wait for ever
+        excess_ = 0; // no suspicion without a comparison: a learner that waits for its end would wait forever
     }
 
     /// Returns whether errors are compared: not after an interruption.
@@ -105,9 +104,9 @@ class ContactDetector {
     [[nodiscard]] bool persistent() const noexcept { return lasted_s_ >= longest_s; }
     /// Returns the number of joints.
     [[nodiscard]] int size() const noexcept { return count_; }
-    /// Returns whether a contact lasts, as the last `tick` did.
+    /// Returns true during a contact, as the last `tick` did.
     [[nodiscard]] bool contact() const noexcept { return contact_; }
-    /// Returns whether a contact lasts or may begin: a learner should not learn the error as a property of
+    /// Returns true during a contact and when one may begin: a learner should then not attribute the error to
     /// the arm.
     [[nodiscard]] bool suspected() const noexcept { return contact_ || excess_ >= release; }
     /// Returns the joint with the largest deviation in units of its limit at the start of the last contact.
@@ -122,8 +121,7 @@ class ContactDetector {
     [[nodiscard]] Scalar speed(int joint) const noexcept { return joints_[joint].speed(); }
     /// Returns the magnitude of a joint's acceleration in rad/s², low-pass filtered.
     [[nodiscard]] Scalar acceleration(int joint) const noexcept { return joints_[joint].acceleration(); }
-    /// Returns the fourth root of the sum of fourth powers of this tick's deviations in units of their
-    /// limits.
+    /// Returns the excess in this tick: the 4-norm of the deviations relative to their limits, ≥ 0.
     [[nodiscard]] Scalar excess() const noexcept { return excess_; }
     /// Returns the motion of a joint in this tick, `joint` from 0.
     [[nodiscard]] JointMotion motion(int joint) const noexcept { return joints_[joint].motion(); }
@@ -149,7 +147,7 @@ class ContactDetector {
         running_ = true;
     }
 
-    /// Follows the motion, and how far it is outside the usual one.
+    /// Updates the motion and the factor by which it exceeds that of the training.
     void follow_range(const Scalar* position, const Steps& steps) noexcept {
         Scalar range = 1;
         for (int k = 0; k < count_; ++k) {

@@ -12,15 +12,15 @@ namespace dfdyn {
 /// Detects frozen sensors: readings that repeat exactly while other joints move. `count` channels, the
 /// positions of the joints first.
 ///
-/// The evidence of a frozen channel is the length of its run of repeats times log(1 / p), where p is the
-/// usual frequency of a repeat while other joints move. Two kinds of runs have no evidence:
-/// - of a position whose joint slowed down before, as a joint that comes to rest does;
-/// - runs of less than 1.5 times the length of the longest earlier run.
+/// The evidence of a frozen channel is the length of its run of repeats times log(1 / p). Here p is the usual
+/// frequency of a repeat while other joints move. Two kinds of runs are no evidence:
+/// - a run of a position whose joint had slowed down before, as when it comes to rest;
+/// - a run shorter than 1.5 times the longest earlier run.
 ///
-/// A joint moves if the mean of its recent steps is at least `dead` times the usual step and `dither`
-/// quantisation steps, because feedback makes the positions of a stationary arm tremble. The usual step is a
-/// mean with the steps as weights, to which minutes of tremble contribute little. A run does not grow while
-/// no other joint moves. Memory: 11 numbers per channel.
+/// A joint counts as moving if the mean of its recent steps is at least `dead` times the usual step and
+/// `dither` quantisation steps: feedback makes the positions of a stationary arm tremble. The usual step is
+/// the mean step weighted by the steps, so that minutes of tremble contribute little. A run does not grow
+/// while no other joint moves. Memory: 11 numbers per channel.
 template <class Scalar, int count>
 class FrozenWatch {
   public:
@@ -31,7 +31,7 @@ class FrozenWatch {
     static constexpr Scalar outlier = 20;
     static constexpr Scalar least_trials = 500; ///< samples before the frequency of repeats is known
     static constexpr int steps = 5;             ///< memory of the mean of the recent steps
-    static constexpr int cost = 14;             ///< multiply-adds per channel of `add`, at most
+    static constexpr int cost = 14;             ///< maximum multiply-adds of `add` per channel
 
     FrozenWatch(Extent<count> channels, int joints) noexcept
         : channels_(channels), joints_(joints), states_(States::zeros(channels)) {}
@@ -60,7 +60,7 @@ class FrozenWatch {
         samples_ = 1;
     }
 
-    /// Returns the log odds of the channel's run against chance; 0 if the joint came to rest by itself.
+    /// Returns the log odds of the channel's run against chance, ≥ 0; 0 if the joint came to rest by itself.
     [[nodiscard]] Scalar evidence(int channel) const noexcept {
         const State& state = states_[channel];
         const bool came_to_rest = channel < joints_ && state.step_before < least_step(state);

@@ -9,9 +9,9 @@ namespace dfdyn {
 /// Computes posterior probabilities of the causes of a change from their evidence (`HypothesisFits`) on the
 /// residuals since its onset: fault isolation by Bayesian model comparison.
 ///
-/// A bias, a friction or a push at a joint may affect some outputs only. So each output uses the better of
-/// the hypotheses "with" and "without", at the price of log(2 m). The log-evidence is multiplied by `trust`,
-/// because real residuals are neither Gaussian nor white, and the columns are not exact.
+/// A bias, a friction or a push at a joint may affect some outputs only. Each output therefore uses the
+/// better of the hypotheses "with" and "without", with log(2 m) subtracted from "with". The log-evidence is
+/// multiplied by `trust`, because real residuals are neither Gaussian nor white, and columns are inexact.
 template <class Scalar, int m>
 class HypothesisBank {
   public:
@@ -19,7 +19,7 @@ class HypothesisBank {
     using Speed = SpeedClasses<Scalar>;
     static constexpr Scalar trust = Scalar(0.2);
     static constexpr Scalar far = Scalar(3.5); ///< standard deviations of an unusual residual
-    /// Log odds against a contact that lasts, and against any other cause that was large and has passed.
+    /// Log odds against a contact that persists, and against any other cause that was large and has passed.
     static constexpr Scalar goes_on = 6;
     static constexpr Scalar large = 8;                   ///< mean square of residuals, relative to the noise
     static constexpr Scalar payload_reach = Scalar(0.5); ///< m: largest distance of a payload from the tip
@@ -30,7 +30,7 @@ class HypothesisBank {
         : outputs_(outputs), has_friction_(friction), fits_(outputs),
           recent_(Storage<Scalar, m>::zeros(outputs)), mean_push_(recent_) {}
 
-    /// Adds a block while no change is on, and the one before it (null after a gap), to the noise estimates.
+    /// Adds a block without a change and its predecessor (null after a gap) to the noise estimates.
     void learn(const Block* now, const Block* before, const Speed& speed) noexcept {
         fits_.learn(now, before, speed);
     }
@@ -52,7 +52,7 @@ class HypothesisBank {
         loudness_ = loudest_ = 0;
     }
 
-    /// Adds a block since the onset, and the one before it.
+    /// Adds a block since the onset and its predecessor, m values each. Cost: `cost_of_add`.
     void add(const Block* now, const Block* before, const Speed& speed) noexcept {
         fits_.add(now, before, speed);
         Scalar loudness = 0;
@@ -83,7 +83,7 @@ class HypothesisBank {
         describe(channel, change);
     }
 
-    /// Multiply-adds of `add`, `start` and `judge`, at most.
+    /// Maximum multiply-adds of `add`, `start` and `judge`.
     static constexpr std::int64_t cost_of_add(int outputs) noexcept {
         return HypothesisFits<Scalar, m>::cost(outputs) + outputs * (function_cost + 4) + 10;
     }
@@ -151,10 +151,9 @@ class HypothesisBank {
         return all;
     }
 
-    /// Returns whether the fitted payload is physically possible: its mass (negative: taken off) differs from
-    /// zero, and its centre is within `payload_reach` of the tip along each axis. Both within
-    /// `payload_deviations` standard deviations of the fit, which are large where the motion does not
-    /// identify them.
+    /// Returns whether the fitted payload is physically possible. Its mass (negative: taken off) must differ
+    /// from zero, and its centre must be within `payload_reach` of the tip along each axis. The tolerance is
+    /// `payload_deviations` standard deviations of the fit.
     [[nodiscard]] bool payload_possible() const noexcept {
         using std::abs;
         const auto size = [&](int i) { return abs(fits_.payload.parameters()[i] * fits_.payload_scale[i]); };

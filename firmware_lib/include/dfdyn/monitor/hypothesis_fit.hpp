@@ -58,8 +58,8 @@ class Evidence {
 /// log-evidence of the fit.
 ///
 /// The prior of each parameter is N(0, `prior_variance`), for columns scaled to the noise. Each row h is
-/// predicted before it is learned, with the error e and the variance S = 1 + h'Ph. So parameters that explain
-/// nothing reduce the evidence (Occam factor). `forgets`: with exponential forgetting, for temporary causes.
+/// predicted before it is learned, with the error e and the variance S = 1 + h'Ph. Parameters that explain
+/// nothing thus reduce the evidence (Occam factor). `forgets`: exponential forgetting, for temporary causes.
 /// Memory: about p²/2 + 5 p + 3 m scalars.
 template <class Scalar, int p, int m, bool forgets>
 class HypothesisFit {
@@ -100,7 +100,7 @@ class HypothesisFit {
     }
     static constexpr int deviation_cost = function_cost + 2 * p;
 
-    /// Multiply-adds of `add`, at most.
+    /// Returns the maximum multiply-adds of `add`.
     static constexpr std::int64_t cost(int outputs) noexcept {
         const Cost row = Learner::cost(p, 1);
         return outputs * (row.predict + row.learn + Evidence<Scalar, m>::cost) + row.forget;

@@ -9,9 +9,9 @@ namespace dfdyn {
 
 /// Fits every cause of a change to the residuals since its onset.
 ///
-/// The residuals are those of a prediction that does not learn the change. Their noise is estimated while no
-/// change is on (`BlockNoise`). Residuals and columns pass through the same whitening filter (D. Cochrane and
-/// G. H. Orcutt, 1949). Columns are scaled to the noise, so that all have the same prior.
+/// The residuals belong to a prediction that does not learn the change. Their noise is estimated in the
+/// absence of a change (`BlockNoise`). Residuals and columns pass through the same whitening filter
+/// (D. Cochrane and G. H. Orcutt, 1949). Columns are scaled to the noise, so that all have the same prior.
 ///
 /// Cost per block while fitting: `cost(m)`.
 template <class Scalar, int m>
@@ -32,7 +32,7 @@ class HypothesisFits {
           targets_(Storage<Scalar, m>::zeros(outputs)),
           rows_(Rows::zeros(extent<product(m, payload_columns)>(outputs * payload_columns))) {}
 
-    /// Adds a block while no change is on, and the one before it (null after a gap), to the noise estimates.
+    /// Adds a block without a change and its predecessor (null after a gap) to the noise estimates.
     void learn(const Block* now, const Block* before, const Speed& speed) noexcept {
         for (int k = 0; k < outputs_; ++k) {
             const Block& other = before == nullptr ? now[k] : before[k];
@@ -61,14 +61,14 @@ class HypothesisFits {
         }
     }
 
-    /// Multiply-adds of `start`, at most.
+    /// Returns the maximum multiply-adds of `start`.
     static constexpr std::int64_t cost_of_start(int outputs, int count) noexcept {
         constexpr int columns = payload_columns + force_columns;
         return std::int64_t{outputs} * (function_cost + 2 + 2 * columns * std::int64_t{count}) +
                columns * (function_cost + 1);
     }
 
-    /// Adds a block since the onset, and the one before it.
+    /// Adds a block since the onset and its predecessor, m values each. Cost: `cost`.
     void add(const Block* now, const Block* before, const Speed& speed) noexcept {
         for (int k = 0; k < outputs_; ++k) {
             const Whitening<Scalar> whitening = whitening_of(k, now, before, speed);
@@ -104,7 +104,7 @@ class HypothesisFits {
     /// Returns the unit of the parameters of a bias, a friction or a push, in output units.
     [[nodiscard]] Scalar unit(int output) const noexcept { return noise_[output].smallest(); }
 
-    /// Multiply-adds of `add`, at most.
+    /// Returns the maximum multiply-adds of `add`.
     static constexpr std::int64_t cost(int outputs) noexcept {
         const std::int64_t own = OfOutput<1, false>::cost(1) + OfOutput<1, true>::cost(1) +
                                  OfOutput<friction_columns, false>::cost(1);

@@ -9,8 +9,8 @@
 
 namespace dfdyn {
 
-/// Motion of a joint, as friction depends on it. `changing`: it started, stopped or reversed a moment ago, or
-/// moves slowly.
+/// Class of a joint's motion, on which its friction depends. `changing`: the joint started, stopped or
+/// reversed within `JointDeviation::change_s`, is about to stop, or moves slowly.
 enum class JointMotion : std::uint8_t { standing, changing, moving };
 inline constexpr int joint_motion_count = 3;
 
@@ -28,18 +28,18 @@ struct ContactLimits {
 /// Deviation of one joint's torque or current from its prediction, and the limit for it.
 ///
 /// The deviation is the error (measured - predicted) after a low-pass filter with two poles, minus a baseline
-/// that follows the error with the time constant `baseline_s`. So errors of weight, temperature or payload,
-/// which change slowly, are not contacts. Friction jumps when a joint starts, stops or reverses. In the
-/// `change_s` after that, the baseline is the whole interval between its last value and zero, the error of an
-/// accurate model in motion. The baseline follows at most `clip` limits. During a contact it is the whole
-/// interval between its value before and the value that it has followed to, so that the return of the error
-/// is no second contact.
+/// that follows the error with the time constant `baseline_s`. Slow errors, for example of weight,
+/// temperature or payload, are therefore not contacts. Friction jumps when a joint starts, stops or reverses.
+/// For `change_s` after that, the baseline is an interval: from its last value to zero, the error of an
+/// accurate model in motion. The baseline follows at most `clip` limits. During a contact it is also an
+/// interval, from its value before the contact to its present value. The return of the error is then no
+/// second contact.
 ///
 /// The limit grows in two ways:
-/// - A model's error is partly proportional to what it predicts. The change of the prediction within
-///   `baseline_s` times `relative` is added to the limit of the motion, as the root of the sum of squares.
+/// - A model's error is partly proportional to its prediction. `relative` times the change of the prediction
+///   within `baseline_s` is added to the limit of the motion, as the root of the sum of squares.
 /// - Where deviations are larger than in training, the limit grows in proportion to their median, at most by
-///   `most_growth`. Contacts do not change a median much, unless they fill half of the time.
+///   `most_growth`. Contacts change a median little unless they fill half of the time.
 template <class Scalar>
 class JointDeviation {
   public:
@@ -49,12 +49,12 @@ class JointDeviation {
     static constexpr Scalar range_s = Scalar(0.3); ///< time constant of the growth beyond the training, s
     /// A joint whose deceleration brings it to rest within this time is about to stop, s.
     static constexpr Scalar stop_s = Scalar(0.1);
-    static constexpr Scalar change_s = Scalar(0.2);     ///< for which a change of the motion lasts, s
+    static constexpr Scalar change_s = Scalar(0.2);     ///< duration of a change of the motion, s
     static constexpr Scalar clip = Scalar(0.6);         ///< deviation that the baseline follows, in limits
     static constexpr Scalar contact_clip = Scalar(0.1); ///< the same during a contact
-    static constexpr Scalar median_s = 20;        ///< time in which a median doubles or halves, at least
+    static constexpr Scalar median_s = 20;              ///< time constant of the change of a median, s
     static constexpr Scalar most_growth = 4;      ///< largest factor by which a limit grows with its median
-    static constexpr Scalar still = Scalar(0.02); ///< rad/s, largest speed of a standing joint
+    static constexpr Scalar still = Scalar(0.02); ///< rad/s, largest speed of a stationary joint
     /// Speed below which dry friction still rises towards stiction (Stribeck effect), rad/s.
     static constexpr Scalar slow = Scalar(0.08);
 
@@ -90,7 +90,8 @@ class JointDeviation {
         motion_ = JointMotion::standing;
     }
 
-    /// Follows the position (rad). Returns speed or acceleration in units of the largest usual one.
+    /// Updates the motion from a position (rad). Returns speed or acceleration relative to the largest usual
+    /// one, whichever is larger.
     Scalar follow_motion(Scalar position, const ContactLimits<Scalar>& limits, const Steps& steps) noexcept {
         velocity_ += steps.velocity * ((position - position_) / steps.dt - velocity_);
         position_ = position;
@@ -100,8 +101,8 @@ class JointDeviation {
         return std::max(speed() / limits.speed, acceleration() / limits.acceleration);
     }
 
-    /// Follows the error. `range`: factor of the limit, >= 1. Returns the magnitude of the deviation in units
-    /// of its limit, at most `largest_share`.
+    /// Updates the deviation and the baseline from an error and a prediction (the output's unit). `range`:
+    /// factor on the limit, >= 1. Returns |deviation| / limit, at most `largest_share`.
     Scalar follow(Scalar error, Scalar prediction, const ContactLimits<Scalar>& limits, Scalar range,
                   bool contact, const Steps& steps) noexcept {
         first_pole_ += steps.filter * (error - first_pole_);
@@ -119,7 +120,7 @@ class JointDeviation {
         return std::min(std::abs(deviation_) / limit, largest_share);
     }
 
-    /// Ends a contact: the baseline has the errors before the contact and the present ones.
+    /// Ends a contact: extends the baseline to the present error.
     void end() noexcept {
         low_ = std::min(low_, second_pole_);
         high_ = std::max(high_, second_pole_);
@@ -179,8 +180,8 @@ class JointDeviation {
         }
     }
 
-    /// Moves the baseline towards the error: by `step` the edge that the error is beyond, by a share of its
-    /// distance the other one.
+    /// Moves the baseline towards the error: the edge that it exceeds by `step`, the other edge by `share` of
+    /// its distance.
     void approach(Scalar step, Scalar share) noexcept {
         const Scalar low = low_ + share * (second_pole_ - low_);
         const Scalar high = high_ + share * (second_pole_ - high_);

@@ -43,8 +43,8 @@ class Monitor {
 
     static constexpr int catch_up = 3; ///< stored blocks that the bank adds per new block
     /// Smallest usual scale of a block's innovation, as a share of that of white innovations with the
-    /// predicted deviation. A deviation that the estimator overestimates, as after a standstill, then is no
-    /// evidence.
+    /// predicted deviation. A deviation that the estimator overestimates, as after a standstill, is then not
+    /// taken as evidence.
     static constexpr Scalar least_scale = Scalar(0.25);
 
     explicit Monitor(const Constants&&) = delete; // it would refer to a temporary
@@ -61,8 +61,8 @@ class Monitor {
         since_refresh_ = 2 * constants.refresh_blocks;
     }
 
-    /// Processes one tick. Values that are not finite or an absurd position count as a gap. Returns true if
-    /// `change()` is new, has another cause, or is over.
+    /// Processes one tick. Values that are not finite and absurd positions count as a gap. Returns true if
+    /// `change()` is new, has another cause, or is over. Cost: `cost`.
     bool tick(const Observation<Scalar>& observation) noexcept {
         if (!blocks_.usable(observation)) {
             interrupt();
@@ -90,8 +90,8 @@ class Monitor {
         since_refresh_ = 2 * constants_->refresh_blocks;
     }
 
-    /// Returns true if the delayed weights are due for a refresh; call `refreshed` after it. Both copies are
-    /// due at the start and after a change, so that none is from before.
+    /// Returns true if the delayed weights are due for a refresh; call `refreshed` after it. At the start and
+    /// after a change both copies are due, so that no older weights remain.
     [[nodiscard]] bool refresh_due() const noexcept {
         return !changing_ && since_refresh_ >= constants_->refresh_blocks;
     }

@@ -59,7 +59,7 @@ class ObservedBlocks {
     static constexpr bool torques = std::is_same_v<typename Arm::Output, JointTorques>;
 
     /// Bound of innovations and residuals, in predicted deviations. A clamped spike cannot overflow a square
-    /// or dominate a mean over later blocks. A lasting deviation of this size still raises an alarm.
+    /// or dominate a mean over later blocks. A persistent deviation of this size still raises an alarm.
     static constexpr Scalar largest_deviation = 1000;
     static constexpr Scalar largest_position = 10'000; ///< rad, m; a larger position counts as a gap
 
@@ -93,7 +93,7 @@ class ObservedBlocks {
         return all;
     }
 
-    /// Adds a usable observation. Returns true if a block is complete: `newest()` is its number.
+    /// Adds a usable observation. Returns true if it completes a block: `newest()` is its number.
     bool add(const Observation<Scalar>& observation) noexcept {
         push(observation);
         if (!motion_.ready() || !residuals_.full()) {

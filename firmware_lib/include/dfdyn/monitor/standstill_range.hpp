@@ -11,11 +11,11 @@ namespace dfdyn {
 /// Learns the range of the prediction error of a stationary joint, which stiction causes without any load.
 ///
 /// At standstill the friction torque has any value up to the break-away torque. The error of the predicted
-/// torque then has an unknown level, which changes slowly while the controller and the contact relax. This is
-/// no noise with a variance: nearly all blocks of a standstill of minutes are quiet, and the next stop is
-/// not. So the range consists of two largest magnitudes in output units (N·m, A): of the error, and of its
-/// change from block to block. A larger magnitude widens the range at once. Smaller ones narrow it with a
-/// memory of `memory` standstills. After `longest_blocks` a standstill may only widen it.
+/// torque then has an unknown level, which changes slowly while the controller and the contact relax. A
+/// variance does not describe it: nearly all blocks of a long standstill are quiet, but the next stop is not.
+/// The range therefore consists of two maxima in output units (N·m, A): the magnitude of the error, and that
+/// of its change from block to block. A larger magnitude widens the range at once. Smaller ones narrow it
+/// with a memory of `memory` standstills. After `longest_blocks` a standstill may only widen it.
 ///
 /// After n standstills the bounds are larger by the factor 1 + `margin` / n, for values not seen yet. Memory:
 /// 8 numbers.
@@ -30,8 +30,8 @@ class StandstillRange {
     static constexpr Scalar growth = 10;
     static constexpr Scalar growth_in_alarm = Scalar(1.5);
 
-    /// Adds a block at standstill. `level`: magnitude of the error; `change`: that of its difference from the
-    /// block before, 0 in the first block; `alarm`: true during an alarm. Ignores values that are not finite.
+    /// Adds a block at standstill. `level`: magnitude of the error, `change`: magnitude of its difference
+    /// from the previous block, 0 in the first one; `alarm`: true during an alarm. Ignores non-finite values.
     void add(Scalar level, Scalar change, bool alarm) noexcept {
         level_.present = std::max(level_.present, level <= largest ? level : Scalar(0));
         change_.present = std::max(change_.present, change <= largest ? change : Scalar(0));
@@ -54,9 +54,9 @@ class StandstillRange {
     void relearn() noexcept { standstills_ = 0; }
 
     [[nodiscard]] bool known() const noexcept { return standstills_ >= needed; }
-    /// Returns the largest usual magnitude of the error, of a known range.
+    /// Returns the largest usual magnitude of the error, output units. Only if `known()`.
     [[nodiscard]] Scalar level() const noexcept { return level_.usual * (1 + margin / standstills_); }
-    /// Returns the largest usual magnitude of its change from block to block, of a known range.
+    /// Returns the largest usual magnitude of its change from block to block. Only if `known()`.
     [[nodiscard]] Scalar change() const noexcept { return change_.usual * (1 + margin / standstills_); }
 
   private:

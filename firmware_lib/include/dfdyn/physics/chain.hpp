@@ -31,11 +31,11 @@ inline constexpr int inertial_parameters = 10;
 
 /// The outputs of a chain are the generalised forces of its joints (N·m, N); every link contributes.
 ///
-/// A kind of outputs defines an `identity` that differs from that of every other kind, the number of outputs,
-/// the bodies that contribute (the last `bodies` links), and the link at which each output's screw begins.
-/// The screw is the motion whose virtual power is that output.
+/// A kind of outputs defines a unique `identity`, the number of outputs, the number of bodies that contribute
+/// (the last `bodies` links), and the link at which each output's screw begins. The screw is the motion whose
+/// virtual power is that output.
 struct JointTorques {
-    static constexpr int identity = 1; ///< differs from that of every other kind of outputs
+    static constexpr int identity = 1; ///< unique among the kinds of outputs
     /// Returns the number of outputs of an arm with `joints` joints.
     static constexpr int outputs(int joints) noexcept { return joints; }
     /// Returns the number of bodies that contribute.
@@ -79,7 +79,7 @@ struct JointTorques {
 /// the sensor is mounted on the base.
 template <int body_count>
 struct WrenchAtSensor {
-    static constexpr int identity = 2; ///< differs from that of every other kind of outputs
+    static constexpr int identity = 2; ///< unique among the kinds of outputs
     /// Returns 6: three forces (N), three torques (N·m).
     static constexpr int outputs(int /*joints*/) noexcept { return 6; }
     /// Returns the number of bodies that contribute.

@@ -13,7 +13,7 @@ namespace dfdyn {
 
 /// A named effect adds columns to the physics. Each column acts on one output and is known up to a factor,
 /// which is learned. An effect defines
-///  - `identity`: differs from that of every other effect, 1000 or more for a user's own; part of a snapshot;
+///  - `identity`: unique among the effects, 1000 or more for a user's own; part of a snapshot;
 ///  - `columns`: their number; `column_cost<Scalar>`: maximum multiply-adds of one;
 ///  - `at_joint`: true if the columns act on joints, so that the outputs must be joint torques;
 ///  - `Constants`: `row` gives the output (0: the first) that each column acts on; the effect may add more;

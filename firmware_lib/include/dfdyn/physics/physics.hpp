@@ -32,8 +32,8 @@ struct Physics {
         typename Arm::template Constants<Scalar> chain;
         typename MotionType::template Constants<Scalar, Arm::joints> motion;
         [[no_unique_address]] EffectConstants<Scalar> effects;
-        /// Limits of |q|, |q̇|, |q̈| of each joint (rad, m, s), beyond which no row is computed: one glitch
-        /// of an encoder would otherwise outweigh all learned samples.
+        /// Limits of |q|, |q̇|, |q̈| of each joint (rad, m, s), beyond which no row is computed: one encoder
+        /// glitch would otherwise outweigh all learned samples.
         Storage<Scalar, product(3, Arm::joints)> motion_limit;
         Storage<std::int32_t, p> selected;         ///< indices of the selected columns, ascending
         Storage<Scalar, p> column_scale;           ///< the learned parameter is the physical one / scale
@@ -126,8 +126,8 @@ struct Physics {
                    storage_bytes<Scalar>(std::int64_t{3} * sizes.joint_count);
         }
 
-        /// Of `push` and `evaluate`: the outputs' screws, motion and frame of a link, the row of a body, and
-        /// the computation of the next link, including its cosine and sine.
+        /// Returns the maximum stack bytes of `push` and `evaluate`: the outputs' screws, motion and frame of
+        /// a link, the row of a body, and the computation of the next link with its cosine and sine.
         [[nodiscard]] static constexpr std::int64_t stack_bytes(const Sizes& sizes) noexcept {
             constexpr int of_a_link = 224;
             const std::int64_t scalars = of_a_link + 6 * sizes.output_count;
@@ -140,8 +140,8 @@ struct Physics {
             const int most = Effect::columns == dynamic ? selected : std::min(Effect::columns, selected);
             return Effect::template column_cost<Scalar> * most;
         }
-        /// Cost of the effects: the sum over all columns, but at most that of the most expensive ones for
-        /// `selected` columns.
+        /// Returns the cost of the effects: the sum over all columns, but at most `selected` times the cost
+        /// of the most expensive column.
         static constexpr std::int64_t effects_cost(int selected) noexcept {
             const std::int64_t most =
                 std::max({std::int64_t{0}, EffectTypes::template column_cost<Scalar>...});

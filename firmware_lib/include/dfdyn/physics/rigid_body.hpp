@@ -9,7 +9,8 @@
 
 namespace dfdyn {
 
-/// Motion of a link in its own frame. `acceleration` is that of the frame's origin minus gravity.
+/// Motion of a link in its own frame: rad/s, rad/s², m/s². `acceleration`: of the frame's origin, minus
+/// gravity.
 template <class Scalar>
 struct LinkMotion {
     Vector3<Scalar> angular_velocity, angular_acceleration, acceleration;
@@ -41,7 +42,7 @@ LinkFrame<Scalar> link_frame(const ChainJoint<Real>& joint, const Scalar& positi
     return frame;
 }
 
-/// Returns the motion of a link from that of the previous link and the joint's rate and acceleration.
+/// Returns the motion of a link from the motion of the previous link and the joint's rate and acceleration.
 template <class Scalar, class Real>
 LinkMotion<Scalar> link_motion(const LinkMotion<Scalar>& previous, const LinkFrame<Scalar>& frame,
                                const ChainJoint<Real>& joint, const Scalar& velocity,
@@ -114,9 +115,9 @@ void inertial_row(const Screw<Scalar>& screw, const LinkMotion<Scalar>& motion, 
     row[9] = u.z * alpha.z + uw.z * w.z;
 }
 
-/// Multiply-adds of the regressor for revolute joints; a prismatic joint needs no cosine and sine. Sum of the
-/// frame and motion per joint, the change of frame per screw and joint it passes, and the row per pair of an
-/// output and a body that contributes to it.
+/// Returns the multiply-adds of the regressor for revolute joints; a prismatic joint needs no cosine and
+/// sine. Terms: frame and motion per joint; change of frame per screw and joint that it passes; row per pair
+/// of an output and a contributing body.
 template <class Arm, class Scalar>
 constexpr std::int64_t rigid_body_cost(const typename Arm::Sizes& sizes) noexcept {
     constexpr std::int64_t joint = cos_sin_cost<Scalar>(1) + 57 + 57;

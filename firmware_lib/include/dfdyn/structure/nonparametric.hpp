@@ -13,8 +13,8 @@ namespace dfdyn {
 /// one learner.
 ///
 /// A structure is a type that defines `Physics` (`NoPhysics` if none), the `Constants` of its learner, its
-/// `Columns` (see `ColumnsOf`), a `Regression` (see `RegressionOf`), and an `identity` that differs from that
-/// of all other structures.
+/// `Columns` (see `ColumnsOf`), a `Regression` (see `RegressionOf`), and an `identity` that is unique among
+/// the structures.
 template <template <class Scalar, int columns, int outputs> class LearnerForm = UdCovariance>
 struct Nonparametric {
     using Physics = NoPhysics;
@@ -32,7 +32,7 @@ struct Nonparametric {
         explicit Columns(const typename Model::Constants& constants) noexcept
             : FeatureColumns<Model>(constants) {}
 
-        /// `numbers`: weights w of all outputs, m × 2d.
+        /// Predicts m `means`. `numbers`: weights w of all outputs, m × 2d. O(2d m).
         void predict_with(const typename Model::Scalar* numbers,
                           typename Model::Scalar* means) const noexcept {
             const int count = this->sizes().column_count();
@@ -106,7 +106,7 @@ struct Nonparametric {
             return cost;
         }
 
-        /// Maximum over all calls.
+        /// Returns the maximum stack bytes over all calls.
         [[nodiscard]] static constexpr std::int64_t
         stack_bytes(const typename Model::Sizes& /*sizes*/) noexcept {
             return std::max(Learner::stack_bytes(), FeatureColumns<Model>::stack_bytes());

@@ -29,7 +29,7 @@ struct Parametric {
         explicit Columns(const typename Model::Constants& constants) noexcept
             : PhysicsColumns<Model>(constants) {}
 
-        /// `numbers`: parameters π, p values.
+        /// Predicts m `means`. `numbers`: parameters π, p values. O(m p).
         void predict_with(const typename Model::Scalar* numbers,
                           typename Model::Scalar* means) const noexcept {
             const int count = this->sizes().physics.column_count;
@@ -59,7 +59,7 @@ struct Parametric {
         void predict(Scalar* means) noexcept { learner_.predict(physics_.data(), means); }
         void predict_without_features(Scalar* means) const noexcept {
             for (int k = 0; k < outputs_; ++k) {
-                means[k] = 0; // without features no part of a prediction is reduced
+                means[k] = 0; // no effect: without features no part of a prediction is reduced
             }
         }
         Scalar variances(Scalar* ratios) const noexcept {
@@ -103,7 +103,7 @@ struct Parametric {
             return cost;
         }
 
-        /// Maximum over all calls.
+        /// Returns the maximum stack bytes over all calls.
         [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
             return std::max(Learner::stack_bytes(), PhysicsColumns<Model>::stack_bytes(sizes));
         }

@@ -8,7 +8,7 @@
 namespace dfdyn {
 
 /// The columns of a structure for one motion, without a learner. `LearnedTorque` uses them for the reference,
-/// where there is nothing to learn.
+/// which has no measurement to learn from.
 ///  - `push`, `ready`, `restart`: the window of past positions.
 ///  - `evaluate`: computes the columns; false if they are not usable.
 ///  - `predict_with(numbers, means)`: predicts with `weights` numbers from `copy_weights` of the
@@ -24,8 +24,8 @@ concept ColumnsOf = requires(C columns, const C& constant, Scalar* values, const
     { C::weights } -> std::convertible_to<int>;
 };
 
-/// The part of a model that its structure defines: what an estimator predicts with and learns. All outputs
-/// are in units of their noise and relative to their offset.
+/// The part of a model that its structure defines: columns and learner of an estimator. All outputs are in
+/// units of their noise and relative to their offset.
 ///  - `push`, `ready`, `restart`: the window of past positions.
 ///  - `evaluate`: computes the present columns; false if they are not usable.
 ///  - `predict(means)`: predicts at the present columns, m values.

@@ -40,11 +40,11 @@ struct SemiparametricKernel {
         }
         bool evaluate() noexcept { return features_.evaluate() && physics_.evaluate(); }
 
-        /// Return φ (2d values) and ψ (m × p) of the last `evaluate`.
+        /// Returns φ (2d values); `physics` returns ψ (m × p). Both of the last `evaluate`.
         [[nodiscard]] const Scalar* features() const noexcept { return features_.data(); }
         [[nodiscard]] const Scalar* physics() const noexcept { return physics_.data(); }
 
-        /// `numbers`: weights w of all outputs, m × 2d, then π.
+        /// Predicts m `means`. `numbers`: weights w of all outputs, m × 2d, then π, p values. O(m (2d + p)).
         void predict_with(const Scalar* numbers, Scalar* means) const noexcept {
             const typename Model::Sizes& sizes = features_.sizes();
             const int columns = sizes.column_count();
@@ -116,7 +116,7 @@ struct SemiparametricKernel {
         [[nodiscard]] const Scalar* columns() const noexcept { return columns_.features(); }
         [[nodiscard]] const Scalar* physics() const noexcept { return columns_.physics(); }
 
-        /// The numbers are E[w] of all outputs, then π.
+        /// Returns the number of weights: E[w] of all outputs, then π.
         [[nodiscard]] int weight_count() const noexcept { return outputs_ * column_count_ + parameters_; }
         void copy_weights(Scalar* weights) const noexcept {
             learner_.copy_weights(weights);
@@ -135,7 +135,7 @@ struct SemiparametricKernel {
             return cost;
         }
 
-        /// Maximum over all calls.
+        /// Returns the maximum stack bytes over all calls.
         [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
             return std::max(Learner::stack_bytes(), Columns<Model>::stack_bytes(sizes));
         }

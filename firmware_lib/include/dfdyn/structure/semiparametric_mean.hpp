@@ -29,7 +29,7 @@ class FixedMean {
     [[nodiscard]] bool ready() const noexcept { return physics_.ready(); }
     void push(const typename Model::Sample& sample) noexcept { physics_.push(sample); }
 
-    /// Returns false if the columns of the physics are not usable.
+    /// Computes ψ_k'π of each output. Returns false if the columns of the physics are not usable.
     bool evaluate() noexcept {
         if (!physics_.evaluate()) {
             return false;
@@ -97,7 +97,7 @@ struct SemiparametricMean {
         }
         bool evaluate() noexcept { return Features::evaluate() && mean_.evaluate(); }
 
-        /// `numbers`: weights w of all outputs, m × 2d.
+        /// Predicts m `means`. `numbers`: weights w of all outputs, m × 2d. O(2d m).
         void predict_with(const typename Model::Scalar* numbers,
                           typename Model::Scalar* means) const noexcept {
             Features::predict_with(numbers, means);
@@ -163,7 +163,7 @@ struct SemiparametricMean {
             return cost;
         }
 
-        /// Maximum over all calls.
+        /// Returns the maximum stack bytes over all calls.
         [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
             return std::max(Residual::stack_bytes(sizes), PhysicsColumns<Model>::stack_bytes(sizes));
         }
