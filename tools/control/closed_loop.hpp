@@ -77,7 +77,7 @@ class ClosedLoop {
     std::int64_t pace_ns(std::int64_t tick) const;
     const LinkFaults& faults_at(double motion_time_s);
     std::int64_t begin_ns();
-    /// Follows the pushes, and what the loop has done about them.
+    /// Records the start of each push and the loop's first reaction to it.
     void note_reaction(double time_s);
     void measure();
     LoopInput sense(std::int64_t due_ns, std::int64_t now_ns);
@@ -95,7 +95,7 @@ class ClosedLoop {
     std::vector<PushReaction> reactions_;
     std::size_t known_actions_ = 0;
     bool pushed_ = false;
-    bool answered_ = true;                ///< there was a reaction to the last push
+    bool answered_ = true;                ///< the loop has reacted to the last push
     double push_s_ = -longest_reaction_s; ///< begin of the last push
     Readings readings_;
     std::int64_t bus_set_ns_ = 0; ///< offset of the loop's clock from the clock that schedules the ticks

@@ -117,7 +117,7 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
     return config;
 }
 
-/// Returns the velocity filter with a window as long as the scenario's, in readings of the loop.
+/// Returns the velocity filter with the scenario's window length, converted to readings of the loop.
 DerivativeModel loop_filter(const Scenario& scenario) {
     DerivativeModel filter = scenario.derivatives;
     const double readings = filter.velocity_window * scenario.controller.rate_hz / filter.rate_hz;
@@ -196,7 +196,7 @@ LoopConfig loop_config(const Robot& robot, const Scenario& scenario, const std::
     return config;
 }
 
-/// Returns the learned part of the feed-forward, with what an earlier run learned.
+/// Returns the learned part of the feed-forward, in the state that an earlier run learned, if any.
 LearnedFeedForward learned_part(const Robot& robot, const LoopModel& learned, int knot_ticks,
                                 const LoopLimits& limits) {
     const MonitorSetup monitor = monitor_setup(learned.model, &robot, learned.source);

@@ -37,7 +37,7 @@ struct LoopLimits {
 
 /// Returns the default limits of a loop with these gains and torque limits:
 /// - following error: 0.8 of the torque limit divided by the position gain; at most 0.5 rad or 0.1 m;
-/// - speed: that of the robot; no limit if the robot has none, or one above 100 rad/s or m/s;
+/// - speed: the robot's limit; none if the robot has none, or one above 100 rad/s or m/s;
 /// - acceleration: twice the torque limit divided by the joint's own inertia (links and rotor) at the start
 ///   of the motion;
 /// - time at the torque limit: 0.25 s. Other values: SafeStopConfig.
@@ -46,23 +46,23 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
 
 /// Returns the bandwidth of the disturbance observer, rad/s per joint: the largest one up to 40 with a phase
 /// margin of 20 degrees (dfdyn::LoopMargin) at 0.6, 1 and 2 times the joint's own inertia at the start of the
-/// motion. The delay is that of the bus (`delay_ticks`), plus half a tick for holding the command, plus half
-/// the largest window of the velocity filter. Slower motion has longer windows and a smaller margin.
+/// motion. The delay is the bus' (`delay_ticks`), plus half a tick for holding the command, plus half the
+/// largest window of the velocity filter. Slower motion has longer windows and a smaller margin.
 JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, const JointVector& start,
                               int delay_ticks);
 
-/// Returns the loop that a scenario describes: the task, gains and rate of its `controller` (of kind
-/// feed_forward), the filter of its `derivatives`, and the torque limit of its `actuators` or of the robot.
-/// The nominal rigid body is `robot` with the scenario's rotors. `learned`: null for nominal feed-forward
-/// only. `delay_ticks`: see LoopConfig. `limits`: replace the defaults. Throws InputError, naming `source` or
-/// the model, for inconsistent inputs.
+/// Returns the loop that a scenario describes: its task, gains and rate of its `controller` (of kind
+/// feed_forward), and filter of its `derivatives`. The torque limit is that of its `actuators` or the
+/// robot's. The nominal rigid body is `robot` with the scenario's rotors. `learned`: null for nominal
+/// feed-forward only. `delay_ticks`: see LoopConfig. `limits`: replace the defaults. Throws InputError,
+/// naming `source` or the model, for inconsistent inputs.
 std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenario& scenario,
                                                const std::string& source, const LoopModel* learned,
                                                int delay_ticks = 0, const LoopLimits& limits = {});
 
-/// Checks that a bus description matches: it has the robot's joints and the loop's rate, its bit rate
-/// suffices for the frames, and the scenario has the quantities that its sensor or drives measure. Throws
-/// InputError, naming the description's file, otherwise.
+/// Throws InputError, naming the description's file, unless a bus description has the robot's joints, the
+/// loop's rate and a sufficient bit rate. The scenario must have the quantities that the bus' sensor or
+/// drives measure.
 void check_bus(const BusDescription& bus, const Robot& robot, const Scenario& scenario);
 
 } // namespace dfdyn::tools

@@ -25,7 +25,7 @@ struct RealTimeRun {
 
 struct PaceOutcome {
     PaceCounters counters;
-    std::string not_real_time; ///< why the program has no real-time scheduling; empty: it has
+    std::string not_real_time; ///< reason for missing real-time scheduling; empty: it is active
 };
 
 /// Log of a loop's motion.

@@ -25,8 +25,8 @@ int delay_of(const BusDescription& description, double loop_period_s) {
     return 0;
 }
 
-/// The loop looks itself for joints that do what they cannot (JointWatch), and says which. A joint that was
-/// missing for no longer than the loop coasts need not qualify again.
+/// Adapts a description to the loop. The bus does not check joint limits, because JointWatch detects abnormal
+/// joints. A joint that was missing no longer than the loop extrapolates need not qualify again.
 BusDescription for_loop(BusDescription description, double loop_period_s) {
     constexpr double none = 1e12;
     description.joint_limits.assign(description.joint_limits.size(), {none, none, none});
@@ -36,13 +36,13 @@ BusDescription for_loop(BusDescription description, double loop_period_s) {
     return description;
 }
 
-/// Whether some joints cannot be believed at this instant, and others can.
+/// Returns whether some joints have a valid reading and others do not.
 bool lacks_single_joints(std::span<const hal::Reason> joints) {
     const auto good = [](hal::Reason reason) { return reason == hal::Reason::ok; };
     return std::ranges::any_of(joints, good) && !std::ranges::all_of(joints, good);
 }
 
-/// Whether all that is missing is so for a while only, because devices or clocks qualify.
+/// Returns whether every missing reading is missing temporarily: its device or clock still qualifies.
 bool returns(const BusSample& sample) {
     const auto passing = [](hal::Reason reason) {
         return reason == hal::Reason::qualifying || reason == hal::Reason::clock_jumped ||
@@ -174,7 +174,7 @@ LoopInput LoopPort::sense(std::int64_t now_ns) {
     return input;
 }
 
-/// Hands the positions that are there, and the torques, to the loop.
+/// Passes the valid positions and the torques to the loop.
 void LoopPort::take(const BusSample& sample, std::int64_t now_ns, LoopInput& input) {
     for (Eigen::Index joint = 0; joint < position_.size(); ++joint) {
         const auto index = static_cast<std::size_t>(joint);

@@ -42,7 +42,7 @@ struct PortCounters {
     std::size_t most_in_tick = 0;              ///< frames in one tick, maximum
     std::uint64_t overfull_ticks = 0;          ///< ticks that left frames for the next one
     std::uint64_t refused = 0;                 ///< own frames that were not sent
-    std::uint64_t incomplete = 0;              ///< ticks for which no sample was complete
+    std::uint64_t incomplete = 0;              ///< ticks without a complete sample
     std::uint64_t invalid = 0;                 ///< ticks with a sample whose positions were invalid
     std::uint64_t held = 0;                    ///< ticks with at least one joint whose frame was missing
     std::uint64_t clock_jumps = 0;             ///< corrections of the bus' clock
@@ -63,8 +63,8 @@ class LoopPort {
     /// Requests from the sensor the data that it must send before it can be used. Call it once per tick.
     ///
     /// If `tick_ns` differs from the expected time by more than half a period, the clock of ticks and stamps
-    /// was set. All later times of the bus are corrected by the sum of these steps, so that the devices'
-    /// readings continue on the time scale before the step.
+    /// was set. All later times of the bus are corrected by the sum of these steps: the devices' readings
+    /// continue on the time scale before the step.
     template <hal::Bus B>
     void receive(B& bus, std::int64_t tick_ns) {
         moment_.reset();
@@ -91,9 +91,9 @@ class LoopPort {
     /// reading. Devices are `returning` while they qualify, or while their clock is invalid or being
     /// corrected (hal::Reason).
     ///
-    /// With the trigger `set`, a tick with a reading of at least one joint does not wait for lost frames: it
-    /// receives a sample of its own time without the joints that have no reading, and the next tick's set
-    /// begins with the next frame. It waits for frames that have arrived and were not read yet.
+    /// With the trigger `set`, a tick with a reading of at least one joint does not wait for lost frames. It
+    /// receives a sample of its own time without the joints that have no reading. The next tick's set begins
+    /// with the next frame. The tick waits for frames that have arrived and were not read yet.
     LoopInput sense(std::int64_t now_ns);
 
     /// Sends a command. It also serves as the torque of the next tick if the bus does not measure torques.
@@ -131,7 +131,7 @@ class LoopPort {
     std::int64_t period_ns_, latency_ns_;
     std::optional<std::int64_t> next_tick_ns_;
     std::int64_t set_ns_ = 0;      ///< sum of all steps of the ticks' clock
-    std::int64_t last_set_ns_ = 0; ///< the same at the previous tick
+    std::int64_t last_set_ns_ = 0; ///< same at the previous tick
     ArrivalClock clock_;
     BusArm arm_;
     TorqueFrames commands_;

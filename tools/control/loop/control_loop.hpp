@@ -55,29 +55,29 @@ struct LoopCounters {
 /// stop. It is independent of the operating system and the bus; the caller schedules the ticks. One tick has
 /// bounded cost, see FeedForward and PositionFeedback.
 ///
-/// Running: the loop starts when the arm has positions and is where the reference begins. The feed-forward
-/// uses times on the loop's own grid and learns from the commands, so that a wrong torque sensor does not
-/// degrade the tracking. The disturbance observer takes over what the feed-forward leaves to the feedback, at
-/// most `observer_share` of the torque limit; it holds its value while positions are missing.
+/// Running: the loop starts when the arm has positions and is at the beginning of the reference. The
+/// feed-forward uses times on the loop's own grid and learns from the commands, so that a wrong torque sensor
+/// does not degrade the tracking. The disturbance observer compensates the error of the feed-forward, at most
+/// `observer_share` of the torque limit. It holds its value while positions are missing.
 ///
 /// After a tick that was not regular (see PositionFeedback), the feedback's torque changes by at most
 /// `feedback_step` of the torque limit per tick. The limitation ends after `recovery_ticks` successive
 /// regular ticks that did not need it. It blends in the correction at the first reading after a gap. It acts
 /// for a few ticks only and does not change the loop's gain and phase while ticks are regular.
 ///
-/// A contact (LoopConfig::on_contact) ends the motion on its path (PausableTask); the loop never continues it
+/// A contact (LoopConfig::on_contact) stops the motion on its path (PausableTask); the loop never resumes it
 /// by itself. The command changes, by at most a torque limit per `stop_time_s`, to the gravity torque of the
-/// nominal body and the compensated offsets at the measured position, and for `hold` that of the gains about
-/// the stopped reference. Observer, learned torque and friction add nothing. `yield` has no torque of the
-/// gains during the contact, and that of the velocity gain after it. `calm_s` after the end of the contact
-/// the reference moves to the measured position, and the arm holds there, until a contact lets it yield
-/// again. While it yields there is no following error.
+/// nominal body at the measured position, plus the compensated offsets. `hold` adds the torque of the gains
+/// about the stopped reference. `yield` adds nothing during the contact, and the torque of the velocity gain
+/// after it. Observer, learned torque and friction add nothing. `calm_s` after the end of the contact the
+/// reference moves to the measured position. The arm holds there until the next contact. While it yields
+/// there is no following error.
 ///
 /// Stopping: every joint receives a reference that brakes from its present position and velocity to rest
 /// within `stop_time_s`. The command changes, by at most a torque limit per `stop_time_s`, to the sum of
 /// - the torque for this braking and against gravity, by the nominal rigid body and the learned part
-///   (FeedForward::holding), plus the observed disturbance, which then holds the arm. The disturbance is left
-///   out if something blocked the arm or a reading was wrong;
+///   (FeedForward::holding);
+/// - the observed disturbance, unless something blocked the arm or a reading was wrong;
 /// - the torque of the position and velocity gains, for joints with a reading in the last `damping_ticks`
 ///   ticks, for any cause. The position gain contributes at most `spring_share` of the torque limit. Other
 ///   joints are not damped; when their readings return, they brake from their position at that time.
@@ -152,7 +152,7 @@ class ControlLoop {
     double time_s() const noexcept { return config_.period_s * static_cast<double>(tick_); }
     /// Begins the reaction to a contact.
     void meet_contact();
-    /// Begins to yield at a contact, and ends that after it.
+    /// Begins to yield at a contact, and stops yielding after it.
     void yield(bool contact);
     /// Holds the arm at its measured position from now on.
     void rest_here();
@@ -172,7 +172,7 @@ class ControlLoop {
     void brake();
     void request_brakes();
     void limit();
-    /// Returns the reference at the time of the measurement `ago` ticks before that of this tick.
+    /// Returns the reference at the time of the measurement of `ago` ticks before this tick.
     const Reference& measured_reference(int ago = 0) const noexcept;
     bool moved() const noexcept { return counters_.running > 0; }
     bool damped(Eigen::Index joint) const noexcept { return feedback_.age(joint) <= damping_ticks; }
@@ -201,11 +201,11 @@ class ControlLoop {
     std::vector<bool> blind_;   ///< joints that brake without readings
     std::optional<std::uint64_t> stopped_tick_, brake_tick_;
     std::uint64_t position_tick_ = 0; ///< tick of the last sample
-    bool told_ = false;               ///< whether a stop was requested
+    bool told_ = false;               ///< a stop was requested
     bool touched_ = false;            ///< a contact has ended the motion
     bool yields_ = false;             ///< the arm may be pushed
     double calm_for_s_ = 0;           ///< since the end of the contact
-    Reference rest_;                  ///< where the arm holds after it has yielded; empty before
+    Reference rest_;                  ///< held position after yielding; empty before
     TakenActions actions_;
     std::size_t acted_number_ = 0;    ///< number of the last change with a reaction …
     Cause acted_on_ = Cause::unknown; ///< … and its cause

@@ -12,7 +12,7 @@
 
 namespace dfdyn::tools {
 
-/// Torque for the reference: that of the nominal rigid body plus that of a learned model, combined as in
+/// Torque for the reference: the torque of the nominal rigid body plus a learned torque, combined as in
 /// dfdyn::FeedForward. The learned part changes by at most the torque limit in 0.05 s.
 class FeedForward {
   public:
@@ -47,11 +47,11 @@ class FeedForward {
     /// Gravity torque at `position`, by the nominal rigid body.
     JointVector gravity(const JointVector& position);
 
-    /// Computes the torque (N·m) that brakes the arm along `reference` or holds it there: the nominal rigid
-    /// body, plus the learned forecasts at rest, combined as at the end of the motion and with their share
-    /// then. Only after a motion has ended; call it once per tick. The learned part is updated every few
-    /// calls, with at most one evaluation of the model per call. Until the first update it is that of the
-    /// motion.
+    /// Computes the torque (N·m) that brakes the arm along `reference` or holds it there: the torque of the
+    /// nominal rigid body plus the learned forecasts at rest, with the weights and share at the end of the
+    /// motion. Call it once per tick, only after a motion has ended. The learned part is updated every few
+    /// calls, with at most one evaluation of the model per call. Until the first update it is the motion's
+    /// last learned part.
     JointVector holding(const Reference& reference);
 
     /// Returns the monitor's last verdict, once; null if there is none.
@@ -60,7 +60,7 @@ class FeedForward {
     /// Returns the joint (from 0) of the present contact; -1: none, or contacts are not detected.
     int contact_joint() const { return learned_ ? learned_->contact_joint() : -1; }
 
-    /// Resets the learner's covariance, so that it quickly follows new measurements.
+    /// Resets the learner's covariance, so that it quickly adapts to new measurements.
     void relearn() {
         if (learned_) {
             learned_->relearn();
@@ -68,7 +68,7 @@ class FeedForward {
     }
 
     /// Adds `torque` (N·m, one value per joint) to the nominal torque permanently, with time constant
-    /// `compensation_s`. Its limit is that of the learned torque.
+    /// `compensation_s`. It has the same limit as the learned torque.
     void compensate(std::span<const double> torque);
 
     /// Share of the learned model in each joint's torque, 0 to 1.

@@ -15,11 +15,11 @@ namespace dfdyn::tools {
 /// Reaction of a loop to a change that the learner's monitor has identified, or to a contact.
 enum class FindingAction : std::uint8_t {
     report,     ///< no reaction: the change appears in the report
-    relearn,    ///< resets the learner's covariance to the prior, so that it quickly follows new measurements
+    relearn,    ///< resets the learner's covariance to the prior, so that it adapts quickly
     compensate, ///< adds the estimated offset to the nominal torque
     stop,       ///< stops the loop, see StopCause::finding
     hold,       ///< of a contact: stops on the path and stays there, with gravity torque and feedback
-    yield,      ///< of a contact: gravity torque alone; holds after it where the arm is then
+    yield,      ///< of a contact: gravity torque alone; holds the arm at its position after it
 };
 
 const char* name(FindingAction action) noexcept;
@@ -40,8 +40,8 @@ class FindingActions {
     FindingActions() noexcept { actions_.fill(FindingAction::report); }
 
     /// Parses items "cause=action". Throws InputError, naming `option`, for unknown causes and actions, and
-    /// for actions that do not suit the cause: relearning is useless for a contact, which ends, and for a
-    /// frozen sensor; only a bias can be compensated.
+    /// for unsuitable actions: relearning is useless for a temporary contact and for a frozen sensor; only a
+    /// bias can be compensated.
     FindingActions(const std::vector<std::string>& choices, const std::string& option);
 
     FindingAction of(Cause cause) const noexcept { return actions_[static_cast<std::size_t>(cause)]; }
@@ -69,7 +69,7 @@ class TakenActions {
     void add(const TakenAction& action);
 
     const std::vector<TakenAction>& list() const noexcept { return taken_; }
-    /// Returns the first reaction that stops the loop, whatever followed it; empty: none.
+    /// Returns the first reaction that stops the loop; empty: none.
     const std::optional<TakenAction>& stop() const noexcept { return stop_; }
 
   private:

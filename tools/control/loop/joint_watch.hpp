@@ -15,11 +15,11 @@ namespace dfdyn::tools {
 /// - frozen_encoder: more than `frozen_patience` successive readings are bit-identical although the joint
 ///   must have moved.
 ///
-/// Two conditions show that a joint must have moved. First, its previous speed was too high to stop at an
-/// eighth of `acceleration` within two quantization steps (the smallest step so far) and four noise bounds of
-/// the velocity's filter. Second, the reference has since covered a sixteenth of the following error and
-/// eight quantization steps. If the speed is the evidence, the repeated readings are not used: see
-/// `repeated`.
+/// Either of two conditions shows that a joint must have moved:
+/// - Speed: with an eighth of `acceleration` it could not stop within two quantization steps (the smallest
+///   step so far) plus four noise bounds of the velocity's filter. The repeated readings are then not used:
+///   see `repeated`.
+/// - Reference: it has since covered a sixteenth of the following error and eight quantization steps.
 ///
 /// O(joints) per tick; no heap after construction.
 class JointWatch {
@@ -31,7 +31,7 @@ class JointWatch {
     void read(const JointVector& position, const JointVector& reference, const PositionFeedback& feedback,
               const std::vector<bool>& missing);
 
-    /// Adds `distance` to the references so far, so that a moved reference is no motion that a joint missed.
+    /// Adds `distance` to the references so far, so that a moved reference does not count as its motion.
     void move_reference(const JointVector& distance) {
         lowest_ += distance;
         highest_ += distance;

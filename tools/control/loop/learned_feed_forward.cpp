@@ -26,8 +26,8 @@ TrainedModel impatient(TrainedModel model) {
     return model;
 }
 
-/// Returns model P of the physics of a model with features. What the features would explain is noise for it,
-/// of their prior variance. Every sample is learned, because the memory is short.
+/// Returns model P of the physics of a model with features. The features' part of the outputs counts as noise
+/// with their prior variance. Every sample is learned, because the memory is short.
 TrainedModel physics_of(TrainedModel model) {
     const double noise_factor = std::sqrt(1 + model.outputs.prior_variance);
     for (double& noise : model.outputs.noise_std) {

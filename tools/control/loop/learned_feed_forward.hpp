@@ -35,9 +35,9 @@ void check_loop_model(const TrainedModel& model, int joints, const std::string& 
 /// encoders' noise and delay, and the weights depend on the measured motion.
 ///
 /// For a model with features and learned physics (SPK) a third estimator learns the physics alone, with a
-/// memory of `physics_memory_s` and without innovation gate. Its forecast is the second one. With few
-/// parameters it is right within a second after a change of the arm, when the features have not been
-/// determined again yet. It starts from the prior, also after `restore`.
+/// memory of `physics_memory_s` and without innovation gate. Its forecast is the second one. It has few
+/// parameters, so it is accurate within a second after a change of the arm, before the features are. It
+/// starts from the prior, also after `restore`.
 ///
 /// The work for one sample is distributed over the control ticks until the next sample, with a bounded share
 /// per tick. This is the host's counterpart of dfdyn::LearnedTorque (a dfdyn::TorqueLearner), for models of
@@ -76,9 +76,9 @@ class LearnedFeedForward {
     bool predict(std::int64_t time_ns, const double* reference, double* torque);
 
     /// Predicts the torque (N·m) that holds the arm at rest at `position`, after the motion has ended. Each
-    /// call adds one sample to the window. The call that completes the window writes the torques of each
-    /// forecast, as `predict` does, for the position of the first of these calls, and returns true if one is
-    /// valid. Then the next window begins.
+    /// call adds one sample to the window. The call that completes the window writes the forecasts as
+    /// `predict` does, for the position of the first of these calls. It returns true if one is valid, and
+    /// starts the next window.
     bool rest(const JointVector& position, JointVector& forecasts_at_rest);
 
     /// Returns the learned state in the firmware's format, to continue after a restart.

@@ -50,8 +50,8 @@ class PositionFeedback {
     void observe(int ticks_ago, const JointVector& position, const Reference& reference,
                  const std::vector<bool>* missing = nullptr);
 
-    /// Adds `distance` to the references of the readings so far: a reference that was moved is no reading
-    /// that jumped.
+    /// Adds `distance` to the references of the readings so far, so that a moved reference does not look like
+    /// a jump of a reading.
     void move_reference(const JointVector& distance);
 
     /// Returns the feedback torque, N·m.

@@ -33,7 +33,7 @@ enum class StopCause : std::uint8_t {
 const char* name(LoopState state) noexcept;
 const char* name(StopCause cause) noexcept;
 
-/// What holds the arm after a stop.
+/// How the arm is held after a stop.
 enum class StopMode : std::uint8_t {
     hold, ///< torque, until the program ends
     limp, ///< torque until the brakes had time to close, then none
@@ -64,8 +64,8 @@ struct TickHealth {
     bool stop_requested = false;
     bool returning = false;            ///< no position yet, from devices that send and still qualify
     StopCause joint = StopCause::none; ///< abnormal behaviour of a joint: see JointWatch
-    /// Ticks since the last reading of the joint that has waited longest. Successive ticks in which
-    /// different joints lack a reading count no further than this.
+    /// Ticks since the last reading of the joint that has waited longest. It bounds the count of successive
+    /// ticks in which different joints lack a reading.
     int longest_silence = std::numeric_limits<int>::max();
 };
 

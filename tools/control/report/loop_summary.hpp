@@ -15,8 +15,8 @@
 
 namespace dfdyn::tools {
 
-/// Prints what a loop did, why it stopped, and what it learned: one or two lines, and one per reaction to a
-/// finding.
+/// Prints the result of a loop, the reason for its stop, and the figures of its learning: one or two lines,
+/// and one per reaction to a finding.
 void print_loop(std::ostream& out, const ControlLoop& loop);
 
 /// Prints the traffic of the bus and its errors: one line.
