@@ -21,11 +21,11 @@ struct Contradiction {
 /// ignored.
 std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed, double limit);
 
-/// Sets the model's limit of the normalised innovation squared from its training rows. Each half of the rows
-/// is evaluated by an estimator that has learned the other half, from the prior or (`from_prior` false) from
-/// the model's initial state. The limit is three times the 99.9 % quantile of a half's innovations, for the
-/// half with the larger quantile. A chi-square bound would reject good samples, because residuals of a real
-/// arm are neither white nor Gaussian. The patience is set to 1.5 s. Cost: two ticks per row.
+/// Sets the model's limit of the normalised innovation squared from its training rows. Two-fold
+/// cross-validation: an estimator that has learned one half of the rows evaluates the other half. It starts
+/// from the prior or (`from_prior` false) from the model's initial state. The limit is three times the larger
+/// of the halves' 99.9 % quantiles of the innovations. A chi-square bound would reject good samples, because
+/// real residuals are neither white nor Gaussian. The patience is set to 1.5 s. Cost: two ticks per row.
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings,
                                 bool from_prior = true);
 

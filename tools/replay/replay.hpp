@@ -57,13 +57,13 @@ class TickSink {
 
 /// Memory limit of a replay. For a replay of unlimited duration, all memory is allocated at the start.
 struct ReplayMemory {
-    /// number of last ticks to keep, at least; at most twice as many are kept; 0: all
+    /// minimum number of last ticks to keep; up to twice this number are kept; 0: all
     std::size_t kept_ticks = 0;
     TickSink* sink = nullptr; ///< receives every tick; null: none
 };
 
-/// Returns the most relevant reason of a tick ("ok" for none): that of the bus if there is one, otherwise
-/// that of the estimator.
+/// Returns the most relevant reason of a tick ("ok" for none): the bus' reason if there is one, otherwise the
+/// estimator's.
 std::string_view reason_name(const ReplayedRecording& replayed, std::size_t tick);
 
 /// Returns one row as an input of the estimator; it refers to `recording`.
@@ -103,7 +103,7 @@ class Replayer {
     ReplayedRecording replayed_;
 };
 
-/// Runs `estimator` over `recording`, with learning; its learned state is kept from before. `on_tick`
+/// Runs `estimator` over `recording`, with learning, starting from its present learned state. `on_tick`
 /// receives the number of completed ticks. `models`: those of `estimator`. `horizon`: T of the index ε, 0 for
 /// none. Throws InputError if the recording lacks the joints, outputs or derivatives of a model.
 ReplayedRecording replay(RuntimeEstimator& estimator, std::span<const TrainedModel> models,

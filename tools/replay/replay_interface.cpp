@@ -44,7 +44,7 @@ class Reception {
     static constexpr std::int64_t short_wait_ns = 5'000'000;
     static constexpr std::int64_t long_wait_ns = 100'000'000;
 
-    /// Reads one frame, so that the bus' state is that of this frame, as in a recording.
+    /// Reads a single frame, so that the bus' state belongs to this frame, as in a recording.
     bool take_one() {
         const std::span<const hal::Frame> frames = bus_.drain(room_);
         for (hal::Frame frame : frames) {

@@ -33,7 +33,7 @@ struct ReplaySummary {
     std::vector<RecordingFigures> recordings;
     std::size_t horizon = 0;
     std::string model;         ///< one line: structure, input and features of each combined model
-    std::string no_rigid_body; ///< why there is no rigid body for comparison; empty: there is one
+    std::string no_rigid_body; ///< reason for the missing rigid body to compare with; empty: there is one
     std::size_t state_bytes = 0;
     /// multiply-adds per tick with learning, or per tick if there was no learning
     std::int64_t operations = 0;

@@ -58,8 +58,8 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
   private:
     static constexpr std::size_t kept = 4096;
 
-    /// Returns whether the last tick was of an untouched arm in motion. A contact, or what may become one, is
-    /// no property of the arm, and the friction of an arm at rest holds torques that no other motion shows.
+    /// Returns whether the last tick is informative: an arm in motion without a contact or a suspected one.
+    /// At rest, friction bears torques that do not occur in motion.
     bool informs() const {
         const ContactWatch::Detector& detector = watch_.detector();
         bool moves = !detector.running();

@@ -18,7 +18,7 @@ namespace dfdyn::tools {
 /// A contact on the clock of the samples.
 struct DetectedContact {
     std::int64_t start_ns = 0;
-    std::int64_t end_ns = 0; ///< 0: not by the end
+    std::int64_t end_ns = 0; ///< 0: it did not end
     int joint = 0;           ///< from 0: the largest deviation in units of its limit at the start
     double peak = 0;         ///< largest deviation of this joint, with its sign, in the output's unit
     bool persistent = false; ///< it did not end, and counts as a change of the arm
@@ -55,8 +55,8 @@ ContactModel scaled_contact(ContactModel contact, double factor);
 /// Returns `contact` with limits for this rate of false contacts per hour, > 0. Requires a `rate_slope`.
 ContactModel contact_at_rate(const ContactModel& contact, double per_hour);
 
-/// Returns the limits of `model` for a rate of false contacts per hour; none: that of the training. Throws
-/// InputError, naming `source`, if the model has no limits, or if they have no other rate.
+/// Returns the limits of `model` for a rate of false contacts per hour; none: the rate of the training.
+/// Throws InputError, naming `source`, if the model has no limits, or if they have no other rate.
 ContactModel contact_limits(const TrainedModel& model, std::optional<double> per_hour,
                             const std::string& source);
 

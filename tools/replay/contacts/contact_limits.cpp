@@ -26,18 +26,18 @@ constexpr double least_limit = 1e-6;           // in units of noise_std
 constexpr double speed_allowance = 0.05;       // rad/s
 constexpr double acceleration_allowance = 0.2; // rad/s²
 constexpr std::size_t fewest_values = 20;      // of a motion, for its own envelope
-constexpr double most_median = 2;              // of a held-out block, in units of the trained model's
+constexpr double most_median = 2;              // of a held-out block, relative to the trained model's
 constexpr std::size_t fewest_peaks = 5;        // of a pass, for its share of the tail
 constexpr std::array relative_choices{0.0, 0.03, 0.05, 0.08, 0.12, 0.18, 0.25, 0.35, 0.5, 0.7};
-constexpr double out_of_reach = 1e3; // factor of limits with which nothing is a contact
+constexpr double out_of_reach = 1e3; // factor on limits that excludes any contact
 constexpr std::int64_t peak_interval_ns = 1'000'000'000;
 constexpr double hour_s = 3600;
-constexpr std::size_t tail_part = 10; // one in so many peaks
+constexpr std::size_t tail_part = 10; // the tail is the largest tenth of the peaks
 constexpr std::size_t least_tail = 10;
 constexpr double new_motion_factor = 1.08;
 constexpr double least_rate_slope = 1e-3;
 
-/// What a joint does in a tick.
+/// Deviation and motion of a joint in one tick.
 struct Deviation {
     std::size_t pass = 0;
     int motion = 0;
@@ -145,9 +145,9 @@ auto in_motion(int motion) {
     return [motion](const Deviation& one) { return one.motion == motion; };
 }
 
-/// Returns the deviations of the passes with at most `most_median` times the trained model's median deviation
-/// of a joint. Some held-out blocks have a motion that the others do not determine: their errors are not
-/// those of the model.
+/// Returns the deviations of a joint in the passes whose median deviation is at most `most_median` times the
+/// trained model's. Some held-out blocks have a motion that the others do not determine: their errors are not
+/// typical of the model.
 Deviations of_determined_passes(const Deviations& deviations) {
     std::array<std::vector<double>, block_count + 1> sizes;
     for (const Deviation& one : deviations) {
@@ -171,7 +171,7 @@ double quantile_of(const Deviations& deviations, Value value, Chosen chosen, dou
     return values.size() < fewest_values ? 0 : quantile(values, share);
 }
 
-/// Limits of a joint that hold nearly all of its deviations.
+/// Limits of a joint that nearly all of its deviations satisfy.
 struct Envelope {
     std::array<double, joint_motion_count> limit{};
     double relative = 0;

@@ -9,24 +9,24 @@
 namespace dfdyn::tools {
 
 /// Measures deviations of joints without contact, for a dfdyn::ContactDetector of `model`. Its outputs must
-/// be joint torques or currents, and nobody may touch the arm in `recordings`, those of the training.
+/// be joint torques or currents. `recordings`: those of the training, without any contact.
 ///
-/// Each of eight blocks of time is predicted by a frozen estimator that has learned the others from the
-/// prior, and all rows by the frozen model, because the errors of both differ.
+/// A frozen estimator predicts each of eight blocks of time after learning the other seven from the prior.
+/// The frozen model predicts all rows. Both passes are used, because their errors differ.
 ///
 /// A joint's limits for the three JointMotions are the 99.9 % quantiles of its deviations, or the 90 %
-/// quantile of all motions if that is larger. Left out are passes with more than
-/// twice the trained model's median: in a short recording some blocks have motions that the others do not
-/// determine. A part of them is in proportion to the change of the
-/// prediction, by the factor that makes the limits smallest. A standing joint's limit is at least half of
-/// that of a changing one, because its friction bears any torque up to the break-away torque. Speeds and
-/// accelerations are usual up to their 99.5 % quantile.
+/// quantile over all motions if that is larger. A part of each limit is proportional to the change of the
+/// prediction, with the factor that makes the limits smallest. Passes with more than twice the trained
+/// model's median are left out: in a short recording some blocks have motions that the others do not
+/// determine. The limit at standstill is at least half the limit near a change of the motion, because
+/// friction bears any torque up to the break-away torque. The usual range of speeds and accelerations ends
+/// at their 99.5 % quantile.
 ///
-/// Then all limits are scaled to the excess that is exceeded `contact_rate_per_hour` times, from an
-/// exponential tail of its largest values in each second (of fewer than ten peaks, with the upper 60 %
-/// confidence limit of the mean), times 1.08 for motions that the training did not have. The shares and
-/// factors were chosen on the UR5 recordings No5 to No9 and one simulated UR5; which blocks are left out,
-/// with a TX40 in sight. Cost: nine ticks per row.
+/// Then all limits are scaled to the excess that is exceeded `contact_rate_per_hour` times. It follows from
+/// an exponential tail of the largest excess of each second. With fewer than ten peaks the upper 90 %
+/// confidence limit of their mean is used. The factor 1.08 accounts for motions that the training did not
+/// have. Shares and factors were chosen on the UR5 recordings No5 to No9 and one simulated UR5; the rule for
+/// leaving out blocks also on a TX40. Cost: nine ticks per row.
 ContactModel measure_contact_limits(const TrainedModel& model, std::span<const Recording> recordings);
 
 } // namespace dfdyn::tools

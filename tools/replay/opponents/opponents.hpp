@@ -25,9 +25,9 @@ Forecasts autoregression(const ReplayedRecording& replayed, std::size_t outputs)
 /// `residual_memory_s`, learned online over the recording. `noise_std`: m values of the model.
 Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedModel& model);
 
-/// Memory of the state (s). On UR5 No5 and No6 and XL330 00, 02, 03, 04 and 06, whose results were known when
-/// it was chosen, all memories from 0.16 s to 8 s are better than persistence and AR(2), shorter ones by a
-/// larger margin. This value provides enough samples for four coefficients at 50 Hz.
+/// Memory of the state (s). It was chosen on UR5 No5 and No6 and XL330 00, 02, 03, 04 and 06. There all
+/// memories from 0.16 s to 8 s are better than persistence and AR(2), shorter ones by a larger margin. This
+/// value provides enough samples for four coefficients at 50 Hz.
 inline constexpr double residual_memory_s = 0.8;
 
 /// Accumulates the errors of one output's forecasts.

@@ -65,7 +65,7 @@ class MotionColumns {
 };
 
 /// Triangular factor of the QR decomposition of rows that are added one by one: an equivalent least-squares
-/// problem with as many rows as columns.
+/// problem with one row per column.
 class TriangularFactor {
   public:
     explicit TriangularFactor(Index columns) : rows_(block + columns, columns) {}
