@@ -53,8 +53,8 @@ struct OutputModel {
     double prior_variance = 1; ///< rho^2 / sigma^2, shared: the outputs share one factor
 };
 
-/// Deviations of joints without contact (see dfdyn::ContactDetector), m x 3: per joint standing, changing,
-/// moving. Empty: not measured, because the outputs are a wrench or by an older version.
+/// Deviations of joints without contact (see dfdyn::ContactDetector), m x 3: per joint stationary, changing,
+/// moving. Empty: not measured, because the outputs are a wrench or the model is of an older version.
 struct ContactModel {
     std::vector<double> limit;          ///< smallest deviation of a contact, > 0
     std::vector<double> usual;          ///< median, >= 0

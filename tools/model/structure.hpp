@@ -9,7 +9,7 @@
 
 namespace dfdyn::tools {
 
-/// What becomes of the physics' parameters.
+/// How the physics' parameters are determined.
 enum class PhysicsRole {
     none,          ///< the model has no physics
     fixed_first,   ///< least squares of the physics alone; the features learn its residual
@@ -22,7 +22,7 @@ enum class PhysicsRole {
 struct Structure {
     const char* name; ///< on the command line and in model.json
     const char*
-        firmware_type; ///< of what is learned, a template over the physics; null: the firmware's default
+        firmware_type; ///< of the structure, a template over the physics; null: the firmware's default
     bool features;     ///< random features
     PhysicsRole physics;
 

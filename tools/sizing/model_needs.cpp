@@ -69,7 +69,7 @@ std::int64_t learned_bytes(const TrainedModel& model) {
            Learner::state_bytes(parameters, 1);
 }
 
-/// Number of columns of the regressions that a sample updates: that of the physics once for each output.
+/// Number of columns of the regressions that a sample updates. The physics counts once for each output.
 std::int64_t learned_columns(const TrainedModel& model) {
     return 2 * std::int64_t{model.features.count} +
            std::ssize(model.outputs.names) * learned_parameters(model);
@@ -137,7 +137,7 @@ std::string byte_words(std::int64_t bytes) {
                         : number_text(static_cast<double>(bytes) / 1024) + " KiB";
 }
 
-/// Rounds up to tenths of KiB, so that what is beyond a bound is larger in words, too.
+/// Rounds up to tenths of KiB, so that a size beyond a bound is also larger as text.
 std::string rounded_byte_words(std::int64_t bytes) {
     return bytes < 1024 ? byte_words(bytes)
                         : number_text(std::ceil(static_cast<double>(bytes) / 102.4) / 10) + " KiB";

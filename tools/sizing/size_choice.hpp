@@ -38,10 +38,10 @@ struct SizeChoice {
 };
 
 /// Chooses sizes within `budget` by a coordinate search: window, rows per joint, memory, features. Each
-/// candidate is trained on the first 70 % of the rows, with few starts and likelihood rows, and evaluated one
-/// step ahead on the rest, with learning. Of candidates with errors within 1 %, the one with fewer operations
-/// is chosen. Equal data give equal choices. `on_candidate` is called before each training. Throws InputError
-/// if nothing fits the budget, and as train_model() does. Cost: about ten trainings.
+/// candidate is trained on the first 70 % of the rows, with few starts and likelihood rows. It is evaluated
+/// one step ahead on the rest, with learning. Of candidates with errors within 1 %, the one with fewer
+/// operations is chosen. Equal data give equal choices. `on_candidate` is called before each training. Throws
+/// InputError if nothing fits the budget, and as train_model() does. Cost: about ten trainings.
 SizeChoice choose_sizes(std::span<const Recording> recordings, OutputKind outputs,
                         const ModelTraining& training, const FreeSizes& free, const TargetBudget& budget,
                         const std::function<void()>& on_candidate = {});

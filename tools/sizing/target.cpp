@@ -37,8 +37,8 @@ std::int64_t extrapolation(const TrainedModel& model) {
     return model.extrapolation ? per_output * static_cast<std::int64_t>(model.outputs.names.size()) : 0;
 }
 
-/// Returns the instructions of learning that grow with the number of columns only: scalars of each column,
-/// which the cost model does not count. The least that suffices for the models of the table, and 5 % more.
+/// Returns the instructions of learning that are proportional to the number of columns, which the cost model
+/// does not count. The factor is the smallest that suffices for the models of the table, plus 5 %.
 std::int64_t of_columns(const ModelNeeds& needs) {
     constexpr std::int64_t per_column = 36;
     return per_column * needs.learned_columns;

@@ -12,9 +12,9 @@
 
 namespace dfdyn::tools {
 
-/// A processor core, with the instructions that it needs per multiply-add of the cost model: least squares
-/// over the models of docs/reference/performance.md, whose instructions were counted, and 8 % more. Learning
-/// needs others per column (`instructions_of`), so that no model of that table needs more.
+/// A processor core and its instructions per multiply-add of the cost model: a least-squares fit to the
+/// counted instructions of the models of docs/reference/performance.md, plus 8 %. With the additional
+/// instructions per column (`instructions_of`) this is an upper bound for every model of that table.
 struct Target {
     std::string name;
     double predict = 0;  ///< of a prediction

@@ -11,7 +11,7 @@
 namespace dfdyn::tools {
 
 /// A learner of six outputs with common columns. One tick predicts all outputs for the next row, updates the
-/// learner with the row, and computes the weights for the prediction of the following row.
+/// learner with the row, and computes the weights for the following prediction.
 class BenchLearner : public Ticking {
   public:
     enum class Kind { ours, covariance, cholesky, gurls, other };
@@ -51,7 +51,7 @@ const std::vector<int>& learner_columns();
 struct Peer {
     /// Returns its learners for the task; null if the library was not available when this program was built.
     BenchLearners (*make)(const RegressionTask& task);
-    /// What is not measured, and the reason; null if nothing is missing.
+    /// Missing measurement and its reason; null if nothing is missing.
     const char* missing = nullptr;
 };
 

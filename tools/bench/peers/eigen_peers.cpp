@@ -7,7 +7,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Textbook recursive least squares with the covariance matrix, of which one triangle is stored.
+/// Textbook recursive least squares with one triangle of the covariance matrix.
 template <class Scalar>
 class EigenCovariance final : public EigenLearner<Scalar> {
     using Base = EigenLearner<Scalar>;

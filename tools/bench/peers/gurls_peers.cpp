@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The work of GURLS (https://github.com/LCSL/GURLS, the paper's tool) for each sample of its recursive
-// Cholesky update (rlsprimalrecupdatecholesky.h, cholupdateutils.h, gmat2d.hpp), implemented again. Compiled
-// if BLAS is available at build time. GURLS itself is not in Debian.
+// Reimplementation of the recursive Cholesky update of GURLS (https://github.com/LCSL/GURLS, the paper's
+// tool; rlsprimalrecupdatecholesky.h, cholupdateutils.h, gmat2d.hpp). Compiled if BLAS is available at build
+// time. GURLS itself is not in Debian.
 #include "tools/bench/peers/typed_learner.hpp"
 
 #ifdef DFDYN_HAS_BLAS
@@ -16,8 +16,8 @@ namespace {
 
 /// One Givens rotation per row of the upper factor of the information matrix, then two triangular solves. It
 /// makes the same BLAS calls in the same memory order as GURLS, and the same copies of the factor, which goes
-/// through a second buffer. The remaining work of GURLS per sample (its list of options, copies of weights
-/// and right-hand sides) is left out, so that this is a lower bound of its time.
+/// through a second buffer. It is a lower bound of the time of GURLS, because the remaining work per sample
+/// (its list of options, copies of weights and right-hand sides) is left out.
 class RecursiveCholesky final : public EigenLearner<double> {
   public:
     explicit RecursiveCholesky(const RegressionTask& task)

@@ -20,8 +20,8 @@ struct EnduranceBench {
     TickTimes first_standing, last_standing;
     std::int64_t denormals = 0; ///< among the numbers of the last state
 
-    /// Relative change of the ninetieth percentile, which is a tick that takes back a variance. These ticks
-    /// take longer, and their number depends on the motion and would determine the median.
+    /// Relative change of the 90th percentile, which is a tick that bounds a variance. These ticks take
+    /// longer. Their number depends on the motion and would determine the median.
     double change_moving() const { return last_moving.p90 / first_moving.p90 - 1; }
     double change_standing() const { return last_standing.p90 / first_standing.p90 - 1; }
 };

@@ -21,7 +21,7 @@ struct LoopBench {
     LoopTimes late;     ///< from a tick's due time to its start
     LoopTimes duration; ///< of the estimator's tick
     std::size_t learned = 0;
-    std::string not_real_time; ///< what the system refused; empty: nothing
+    std::string not_real_time; ///< privileges that the system refused; empty: none
     int cores = 0;             ///< available to the process
 };
 

@@ -25,7 +25,7 @@ struct ModelBench {
 };
 
 /// Runs with 2d = 500, 12 inputs, 6 outputs, p = 40 rigid-body parameters and two of friction per joint.
-/// `dense_ticks`: number of ticks of the dense form, each of which takes a considerable part of a second.
+/// `dense_ticks`: number of ticks of the dense form; each takes a considerable part of a second.
 ModelBench run_model_bench(const RepetitionOptions& options, int dense_ticks, MultiplyAddProbe& probe,
                            const std::function<void(double)>& on_share_done);
 

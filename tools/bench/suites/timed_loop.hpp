@@ -20,7 +20,7 @@ struct TimedLoop {
     PaceCounters pace;
     std::vector<double> late_us;     ///< per tick: from its due time to its start
     std::vector<double> duration_us; ///< per tick: from its start to its end
-    std::string not_real_time;       ///< what the system refused, and why; empty: nothing
+    std::string not_real_time;       ///< privileges that the system refused, and why; empty: none
     int cores = 0;                   ///< available to the process; with one core, the load shares it
 };
 

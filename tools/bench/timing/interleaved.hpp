@@ -25,10 +25,10 @@ struct RepetitionOptions {
 };
 
 /// Measures the ticks of all `subjects` with one repetition of each in turn, so that disturbances of the
-/// machine affect all equally. The probe runs before and after each repetition. A repetition is valid if both
-/// probes are near the best rate (the core was free and at its full clock) and the system did not interrupt
-/// the thread. If less than a tenth is valid, all repetitions are used. `clock_cost_ns` is subtracted from
-/// every tick. `on_pass` receives the number of completed passes.
+/// machine affect all equally. The probe runs before and after each repetition. A repetition is valid if the
+/// system did not interrupt the thread and both probes are near the best rate: the core was then free and at
+/// its full clock. If less than a tenth is valid, all repetitions are used. `clock_cost_ns` is subtracted
+/// from every tick. `on_pass` receives the number of completed passes.
 std::vector<TickTimes> time_interleaved(std::span<Ticking* const> subjects, const RepetitionOptions& options,
                                         MultiplyAddProbe& probe, double clock_cost_ns,
                                         const std::function<void(int)>& on_pass);

@@ -17,8 +17,7 @@ using Eigen::VectorXd;
 /// log alpha_1, log alpha_2, logit beta_1, logit beta_2. The stored R is the paper's matrix with these
 /// alphas. Its scale is 1 / standard deviation of the row with alpha = 1. Therefore alpha is the relevance of
 /// the input with unit standard deviation, instead of 1/T_s and 1/T_s^2, and the sample period is not needed.
-/// 2
-/// <= lags.
+/// lags >= 2.
 class StructuredRows final : public RowFamily {
   public:
     explicit StructuredRows(int lags) : lags_(lags) {}

@@ -11,7 +11,7 @@
 
 namespace dfdyn::tools {
 
-/// What an input computes xi from, and so which constants it stores.
+/// The quantities from which an input computes xi. They determine the constants that it stores.
 enum class InputForm {
     derivatives, ///< positions, velocities and accelerations; no rows
     window,      ///< the last positions themselves, scaled
@@ -21,7 +21,7 @@ enum class InputForm {
 /// Velocities and accelerations of the physics, in addition to the input, unless the physics has filters of
 /// its own.
 enum class MotionSource {
-    derivatives, ///< those of the recording
+    derivatives, ///< from the recording
     own_filters, ///< rows 2 and 3 in physical units
     own_rows,    ///< rows 2 and 3, of length 1, with additional factors
     polynomial,  ///< a polynomial of degree 2 through the window
@@ -34,13 +34,13 @@ struct RowShape {
     Eigen::MatrixXd pooled_factor{}; ///< see LagSpread; used by inputs with free rows
 };
 
-/// What distinguishes an input from the others (paper, Section V). To add one: a value of InputKind, a file
-/// in this folder, a line in input_catalogue.cpp, and its type in the firmware.
+/// Properties of an input (paper, Section V). To add one: a value of InputKind, a file in this folder, a line
+/// in input_catalogue.cpp, and its type in the firmware.
 struct InputDescription {
     InputKind kind;
     const char* name; ///< on the command line and in model.json
     InputForm form;
-    /// Returns whether a stored input can have its number of lags and rows per joint.
+    /// Returns whether a stored input has a permitted number of lags and rows per joint.
     bool (*fits)(const InputModel& input);
     /// Returns the firmware's type, without its namespace.
     std::string (*firmware_type)(const InputModel& input);

@@ -55,7 +55,7 @@ struct AnyInput {
             apply([&](const auto& map) { map.evaluate(xi); }, map_);
         }
 
-        /// Unknown before the kind is chosen: see `cost_of_input`.
+        /// Returns 0: the cost depends on the kind, see `cost_of_input`.
         [[nodiscard]] static constexpr std::int64_t cost(int /*joints*/, int /*lags*/, int /*rows*/) {
             return 0;
         }

@@ -23,9 +23,9 @@ struct CombinationMember {
 
 /// Returns an estimator that combines several estimators of the same arm and outputs as
 /// dfdyn::ForecastCombination does. A tick that follows a learned sample is weighted by the members' errors
-/// one step ahead, any other prediction by those 0.2 to 0.4 s ahead; both depend on the ratio of the present
-/// variances to those of the samples with these errors. While no error is known, the variances decide, and
-/// count as calibrated if all members are calibrated.
+/// one step ahead, any other prediction by their errors 0.2 to 0.4 s ahead. Both are scaled by the ratio of
+/// the present variances to those of the samples with these errors. While no error is known, the variances
+/// determine the weights. They count as calibrated if all members are calibrated.
 ///
 /// - Prediction: requires the predictions of all members. The status comes from the first member without a
 ///   prediction, or without learning.

@@ -9,7 +9,7 @@
 namespace dfdyn::tools {
 
 /// An estimator that changes or observes another one. `Interface`: RuntimeEstimator, or one derived from it.
-/// Every function calls that of the other estimator; derived classes override what differs.
+/// Every function forwards to the other estimator; derived classes override those that differ.
 template <class Interface>
 class EstimatorDecorator : public Interface {
   public:

@@ -24,11 +24,11 @@ struct ActuatorModel {
 
 /// An arm with actuators and friction, integrated in fixed steps.
 ///
-/// One step is a Strang splitting: half a step of the bristles at constant joint velocity, a whole step of
-/// the rigid body (classical fourth-order Runge-Kutta, bristles held), and another half step of the bristles.
-/// Its order is 4 without bristles and 2 with them. The bristles' part is exact, so that only the oscillation
-/// of a link on its bristles limits the step: step · sqrt(σ0 / inertia) and σ1 / inertia · step must be below
-/// 2.
+/// One step is a Strang splitting. Half a step of the bristles at constant joint velocity is followed by a
+/// whole step of the rigid body (classical fourth-order Runge-Kutta, bristles held) and another half step of
+/// the bristles. Its order is 4 without bristles and 2 with them. The bristles' part is exact, so only the
+/// oscillation of a link on its bristles limits the step: step · sqrt(σ0 / inertia) and σ1 / inertia · step
+/// must be below 2.
 ///
 /// A soft joint is represented by two joints about one axis: the rotor turns relative to the previous link,
 /// and the link turns relative to the rotor, driven by the gear. The rotor is a separate body that the
@@ -86,8 +86,8 @@ class SimulatedArm {
     Eigen::Index joint_count() const noexcept { return static_cast<Eigen::Index>(motor_.size()); }
     bool soft(Eigen::Index joint) const { return actuators_.gear.soft(joint); }
     void rest_on_gears();
-    /// Index of the coordinate of a joint's motor. For a soft joint, the next coordinate is that of the link
-    /// relative to its rotor.
+    /// Index of the coordinate of a joint's motor. For a soft joint, the next coordinate is the position of
+    /// the link relative to its rotor.
     Eigen::Index motor(Eigen::Index joint) const { return motor_[static_cast<std::size_t>(joint)]; }
     /// Converts one value per coordinate to one value per link.
     JointVector of_joints(const JointVector& coordinates) const;
@@ -118,7 +118,7 @@ class SimulatedArm {
     std::optional<ArmFaults> faults_;
     /// of the last link, and beyond the sensor; both without payloads
     InertialParameters bare_, bare_beyond_;
-    JointVector asked_, command_; ///< before and after limit and faults
+    JointVector asked_, command_; ///< torque commands before and after limit and faults
     bool commanded_ = false;      ///< the brakes release with the first command
     JointVector load_;            ///< N·m, transmitted by the gears; the friction uses it one step later
     double time_s_ = 0;

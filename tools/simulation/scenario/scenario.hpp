@@ -58,16 +58,15 @@ struct ScenarioChain {
     Eigen::Vector3d tip_point = Eigen::Vector3d::Zero();
     std::string base;             ///< link; empty: the root
     std::string ft_joint;         ///< empty: determined automatically
-    std::string wrench_direction; ///< child_to_parent, parent_to_child; empty: that of the robot's file
+    std::string wrench_direction; ///< child_to_parent, parent_to_child; empty: from the robot's file
     std::vector<double> gravity;  ///< m/s², in the frame of the robot's root; empty: 9.81 along -z
 };
 
 /// Reads the chain only, because the robot is needed to read the rest.
 ScenarioChain read_scenario_chain(const std::filesystem::path& path);
 
-/// Reads a scenario for `robot`. Throws InputError with the file and the path of the field if a field is
-/// unknown, missing, out of range, of another type, without one number per joint, or inconsistent with
-/// another.
+/// Reads a scenario for `robot`. Throws InputError with the file and the path of the field for a field that
+/// is unknown, missing, out of range, of the wrong type or length, or inconsistent with another.
 Scenario read_scenario(const std::filesystem::path& path, const Robot& robot);
 
 } // namespace dfdyn::tools

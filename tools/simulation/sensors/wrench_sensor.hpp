@@ -21,12 +21,12 @@ struct WrenchSensorModel {
     int order = 2;                       ///< of the filter
     Wrench bias = Wrench::Zero();        ///< at t = 0
     Wrench drift_per_s = Wrench::Zero(); ///< of the bias
-    double delay_s = 0;                  ///< in addition to that of the filter
+    double delay_s = 0;                  ///< in addition to the filter's delay
 };
 
-/// Model of a six-axis sensor: low-pass filter, delay (fractions of a step by linear interpolation), wrong
-/// mounting, calibration error, bias and drift, noise, saturation, quantization (to the nearest of 2^bits
-/// steps of the range), and hold until the next reading.
+/// Model of a six-axis sensor, in this order: low-pass filter, delay, wrong mounting, calibration error, bias
+/// and drift, noise, saturation, quantization and hold until the next reading. Fractions of a step are
+/// delayed by linear interpolation. Quantization rounds to the nearest of 2^bits steps of the range.
 class WrenchSensor {
   public:
     /// `period_s`: step of the simulation; the sensor's period must be a multiple of it.

@@ -74,7 +74,7 @@ class Task {
 };
 
 /// Returns the task. Throws InputError with source and field if the tip cannot reach a circle or a joint
-/// would exceed its limits on it: by how much, and where.
+/// would exceed its limits on it. The message contains the excess and the place.
 std::unique_ptr<Task> make_task(const TaskModel& model, const Robot& robot, double period_s,
                                 std::uint64_t seed);
 
