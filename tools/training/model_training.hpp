@@ -61,9 +61,9 @@ struct ModelTrainingResult {
 ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind outputs,
                                 const ModelTraining& training, const ProgressCallback& progress);
 
-/// Computes the initial state of `model` again by batch least squares over all usable samples of `prepared`,
-/// with its hyperparameters, motion and features, for another draw of features or other data. Only for a
-/// model trained without shrinkage: the prior does not include the robot's own parameters.
+/// Computes the initial state of `model` again, for another draw of features or other data: batch least
+/// squares over all usable samples of `prepared` with the model's hyperparameters, motion and features. Only
+/// for a model trained without shrinkage: the prior does not include the robot's own parameters.
 void restart_model(TrainedModel& model, const PreparedTraining& prepared);
 
 } // namespace dfdyn::tools

@@ -78,8 +78,8 @@ void bound_prior(TrainedPhysics& physics, const VectorXd& parameter_size) {
     }
 }
 
-/// Returns the units of the parameters for which the prior is gamma^2 I and psi~ has order 1, as far as the
-/// options permit.
+/// Returns the units of the parameters in which the prior is gamma^2 I and psi~ has order 1, if the options
+/// permit this.
 TrainedPhysics units_of(const TrainingSetup& setup, const PhysicsPart& part, const OutputModel& outputs) {
     const PhysicsOptions& options = setup.options.physics;
     TrainedPhysics physics;

@@ -32,10 +32,10 @@ enum class PriorForm {
 /// The physics of P, SP, SP2 and SPK.
 struct PhysicsOptions {
     const Regressor* regressor = nullptr; ///< of the recording's joints and outputs; must outlive training
-    /// Motion input of the regressor. False, as in the paper: that of the input. STD: the recording's; DFSR:
-    /// its two filters in physical units (see difference_motion()); DFR: its rows 2 and 3, of length 1, with
-    /// additional factors; DF, DFW: a polynomial of degree 2 through the window. True: filters like those of
-    /// DFSR, with separate poles.
+    /// Motion input of the regressor. False, as in the paper: derived from the input. STD: the recording's
+    /// derivatives; DFSR: its two filters in physical units (see difference_motion()); DFR: its rows 2 and 3,
+    /// of length 1, with additional factors; DF, DFW: a polynomial of degree 2 through the window. True:
+    /// filters like those of DFSR, with separate poles.
     bool own_motion = false;
     PriorForm prior = PriorForm::scaled;
     double column_threshold = 1e-3; ///< of select_columns(), in (0, 1)
@@ -63,9 +63,9 @@ struct TrainingOptions {
     /// paper: one length scale for inputs with unit standard deviation.
     bool relevance = true;
     bool centred = true; ///< NP: outputs minus their mean; false, as in the paper: a prior with zero mean
-    /// Physics starts near the robot's own parameters, if PhysicsOptions contains them. Away from the data,
-    /// predictions return to the mean (NP), the physics or zero (P), and standard deviations grow to the
-    /// range of the outputs. False: none of this, as in the paper.
+    /// True: physics starts near the robot's own parameters, if PhysicsOptions contains them. Away from the
+    /// data, predictions return to the mean (NP), the physics or zero (P), and standard deviations grow to
+    /// the range of the outputs. False, as in the paper: neither.
     bool shrinkage = true;
     int feature_count = 250; ///< d >= 1; P has none
     bool orthogonal = true;  ///< orthogonal random features
@@ -108,11 +108,11 @@ struct TrainedPhysics {
     /// 1/s^2. Empty: the recording's derivatives (STD).
     Eigen::MatrixXd motion_rows;
     std::vector<Eigen::Index> columns; ///< p chosen columns of the regressor, ascending
-    /// p: prior "scaled": 1 / (root mean square of the column over the likelihood rows, with each output's
-    /// rows divided by the output's standard deviation), times the ratio of the geometric means of noise_std
-    /// and of the outputs' standard deviations, so that psi~ has order 1; "unit": 1; "diagonal": the square
-    /// roots of D. At most PhysicsOptions::parameter_size / gamma, so that no parameter's prior standard
-    /// deviation exceeds its plausible size.
+    /// p, by the form of the prior. "unit": 1. "diagonal": the square roots of D. "scaled": so that psi~ has
+    /// order 1, 1 / (root mean square of the column over the likelihood rows, each output's rows divided by
+    /// its standard deviation), times the geometric mean of noise_std / (standard deviation of the output).
+    /// At most PhysicsOptions::parameter_size / gamma, so that no parameter's prior standard deviation
+    /// exceeds its plausible size.
     Eigen::VectorXd column_scale;
     double prior_variance = 0; ///< gamma^2 in these units; 0 for SP and SP2, whose pi is fixed
     PhysicsStart start;
@@ -126,8 +126,8 @@ struct TrainingResult {
     std::vector<HoldOutPoint> hold_out;    ///< CV: the errors over the grid
 };
 
-/// Trains a model. ML: maximizes the marginal likelihood of the exact kernel on strided rows in motion, then
-/// refines the hyperparameters with that of the random features on all usable rows (see FeatureLikelihood).
+/// Trains a model. ML: maximizes the marginal likelihood of the exact kernel on strided rows in motion. Then
+/// it refines the hyperparameters with the likelihood of the features on all usable rows (FeatureLikelihood).
 /// DFR starts from the best fit of DFSR, then from polynomial differentiators and filters. CV: searches a
 /// grid, with training on the first of these rows and evaluation on the last. Finally, the batch solution
 /// over all usable rows becomes the initial state.

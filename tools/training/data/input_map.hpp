@@ -27,7 +27,7 @@ class InputMap {
     /// offset, because the kernel depends on differences only.
     virtual Eigen::MatrixXd inputs(const Eigen::VectorXd& parameters) const = 0;
 
-    /// Returns the gradient with respect to the parameters, from that with respect to inputs(parameters).
+    /// Returns the gradient with respect to the parameters, from the one with respect to inputs(parameters).
     virtual Eigen::VectorXd pull_back(const Eigen::VectorXd& parameters,
                                       const Eigen::MatrixXd& input_gradient) const = 0;
 

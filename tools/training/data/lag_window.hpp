@@ -20,9 +20,9 @@ class LagSpread {
     /// `rows` must be usable and not empty. O(rows * n * (M+1)^2), memory O(n (M+1)^2).
     LagSpread(const Eigen::MatrixXd& positions, const RowList& rows, int lags);
 
-    /// Returns the standard deviation s = |T_i r|. Returns 0 for a constant input: for a joint whose standard
-    /// deviation is below a thousandth of the largest joint's (a stationary joint with encoder noise only),
-    /// or for a combination that differs from 0 by rounding errors only.
+    /// Returns the standard deviation s = |T_i r|. Returns 0 for a constant input:
+    /// - a joint whose standard deviation is below a thousandth of the largest joint's (encoder noise only);
+    /// - a combination that differs from 0 by rounding errors only.
     double deviation(Eigen::Index joint, const Eigen::VectorXd& row) const;
 
     /// ds/dr = T_i' T_i r / s. Only where deviation() > 0.

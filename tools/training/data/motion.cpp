@@ -15,9 +15,9 @@ using Eigen::VectorXd;
 
 constexpr double logit_most = 6;         // beta between 0.0025 and 0.9975
 constexpr double beta_start = 0.4;       // the filters of DFR's starts
-constexpr double log_factor_range = 4.6; // a hundred times either way
-constexpr double log_room = 0.7;         // twice
-constexpr double alike_least = 0.05;     // correlation of a row with the derivative from which it starts
+constexpr double log_factor_range = 4.6; // a factor of 1/100 to 100
+constexpr double log_room = 0.7;         // a factor of 2
+constexpr double alike_least = 0.05;     // least correlation of a row with the derivative it starts from
 
 Bounds no_bounds() { return {VectorXd(0), VectorXd(0)}; }
 

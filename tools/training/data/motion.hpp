@@ -43,7 +43,7 @@ class LearnedMotion {
     virtual bool learns() const = 0; ///< whether any parameter changes it
     virtual MotionSamples evaluate(const Eigen::VectorXd& parameters) const = 0;
 
-    /// Returns as many entries as `parameters`.
+    /// Returns the gradient with respect to `parameters`.
     virtual Eigen::VectorXd pull_back(const Eigen::VectorXd& parameters,
                                       const MotionGradient& gradient) const = 0;
 };
@@ -62,8 +62,8 @@ class MotionRows {
     virtual bool learns() const = 0;
     virtual Eigen::MatrixXd evaluate(const Eigen::VectorXd& parameters) const = 0;
 
-    /// Applies the chain rule to the gradient with respect to the rows; returns as many entries as
-    /// `parameters`.
+    /// Applies the chain rule: returns the gradient with respect to `parameters`, from the gradient with
+    /// respect to the rows.
     virtual Eigen::VectorXd pull_back(const Eigen::VectorXd& parameters,
                                       const Eigen::MatrixXd& gradient) const = 0;
 };

@@ -15,7 +15,7 @@ namespace dfdyn::tools {
 MotionSamples stored_motion(const InputModel& motion, const TrainingData& data, const RowList& rows);
 
 /// Returns ten times the largest position, velocity and acceleration of each joint in `data`, as computed by
-/// the physics. The factor equals that of the position and output limits, because differentiated encoder
+/// the physics. The factor is the same as for position and output limits, because differentiated encoder
 /// counts have outliers.
 std::vector<double> motion_limits(const InputModel& motion, const TrainingData& data);
 

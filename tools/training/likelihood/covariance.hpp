@@ -5,8 +5,8 @@
 
 namespace dfdyn::tools {
 
-/// Covariance C (N x N, positive definite), common to all outputs up to a factor: that of the exact kernel,
-/// of random features, or of white noise.
+/// Covariance C (N x N, positive definite) of the exact kernel, of random features, or of white noise. It is
+/// common to all outputs up to a factor.
 class Covariance {
   public:
     virtual ~Covariance() = default;

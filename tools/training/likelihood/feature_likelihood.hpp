@@ -11,8 +11,8 @@
 namespace dfdyn::tools {
 
 /// -2 log marginal likelihood of the model that the estimator uses: with the random features of one draw of
-/// omega instead of the exact kernel, C = Phi Phi' + r I. Its cost is linear in the number of samples, so
-/// that it can use all of them, and it includes the approximation error of the features. Parameters as in
+/// omega instead of the exact kernel, C = Phi Phi' + r I. It includes the approximation error of the
+/// features. Its cost is linear in the number of samples, so it can use all of them. Parameters as in
 /// MarginalLikelihood. Refers to `input` and `outputs`.
 class FeatureLikelihood final : public Likelihood {
   public:

@@ -29,8 +29,8 @@ struct Evidence {
     PhysicsFit physics;                 ///< empty for NP
 };
 
-/// Likelihood of the outputs for a covariance C that they have in common, up to a factor each. Used for the
-/// exact kernel and for the random features.
+/// Likelihood of the outputs for a covariance C that is common to them, up to one factor per output. Used for
+/// the exact kernel and for the random features.
 class OutputLikelihood {
   public:
     OutputLikelihood() = default;

@@ -10,9 +10,9 @@ namespace dfdyn::tools {
 /// Outputs with physics: y_k = Psi_k pi + e_k, e_k ~ N(0, rho_k^2 C). Without a prior on pi it is model SP
 /// (with C = I the least squares of P and SP2); with a prior it is SPK (with C = I model P), where gamma^2
 /// Psi Psi' is added by the matrix inversion lemma (paper, Section III-D). All rho_k^2, pi and gamma^2 have
-/// their most likely values for every C, found from the statistics Psi_k' C^-1 Psi_k. Instead, the logarithms
-/// of a diagonal prior are parameters, after those of the physics. Refers to `physics`, which must outlive
-/// it.
+/// their most likely values for every C, found from the statistics Psi_k' C^-1 Psi_k. An exception is a
+/// diagonal prior: its logarithms are parameters, after those of the physics. Refers to `physics`, which must
+/// outlive it.
 class PhysicsLikelihood final : public OutputLikelihood {
   public:
     /// `outputs` N x m, not centred, because the physics explains the mean.

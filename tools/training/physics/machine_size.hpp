@@ -10,16 +10,16 @@
 
 namespace dfdyn::tools {
 
-/// A fitted parameter is rejected if it exceeds its size by this factor. A column may represent a combination
-/// of parameters, such as a mass that includes a first moment divided by the length of a short link, and the
-/// values of nearly equal columns may cancel each other. Two real recordings with tolerable predictions have
+/// A fitted parameter is rejected if it exceeds its size by this factor. Large values are possible: a column
+/// may represent a combination of parameters, such as a mass plus a first moment divided by a short link's
+/// length, and values of nearly equal columns may cancel. Two real recordings with tolerable predictions have
 /// values of 13 times the size; columns of rounding errors had 1e13 times.
 inline constexpr double parameter_margin = 100;
 
 /// Returns the largest plausible magnitude of each physical parameter for the robot's size: P entries > 0,
-/// ten per body of `chain`, then `effects`. They follow from the total mass m of the moving links (kg), the
-/// reach r (m; sum of the distances between joints and of prismatic travels, up to the tip or the farthest
-/// centre of mass), and per joint the torque T = max(effort limit, m g r) and the velocity limit v:
+/// ten per body of `chain`, then `effects`. The reach r (m) is the sum of the distances between joints and of
+/// prismatic travels, up to the tip or the farthest centre of mass. With it, the mass m of the moving links
+/// (kg), and per joint the torque T = max(effort limit, m g r) and the velocity limit v, the sizes are
 /// - mass: m; first moment: m r; rotational inertia and rotor inertia: m r^2, because a column represents
 ///   combinations over all links;
 /// - Coulomb and Stribeck friction, ripple and offset: T; viscous friction: T / v; spring: T per rad;

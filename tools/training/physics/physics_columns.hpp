@@ -30,7 +30,7 @@ class PhysicsColumns {
     /// then its own.
     virtual Eigen::MatrixXd evaluate(const Eigen::VectorXd& parameters) const = 0;
 
-    /// Returns the gradient with respect to `parameters`, from that with respect to evaluate(parameters).
+    /// Returns the gradient with respect to `parameters`, from the one with respect to evaluate(parameters).
     virtual Eigen::VectorXd pull_back(const Eigen::VectorXd& parameters,
                                       const Eigen::MatrixXd& gradient) const = 0;
 };
@@ -38,7 +38,7 @@ class PhysicsColumns {
 /// A regressor of the motion: the selected columns, each times its scale.
 class RegressorColumns final : public PhysicsColumns {
   public:
-    /// Refers to `regressor`, which must outlive it. `choice.scale` has as many entries as `choice.columns`.
+    /// Refers to `regressor`, which must outlive it. `choice.scale` has one entry per `choice.columns`.
     RegressorColumns(const Regressor& regressor, std::unique_ptr<LearnedMotion> motion, ColumnChoice choice)
         : regressor_(regressor), motion_(std::move(motion)), choice_(std::move(choice)) {}
 

@@ -27,7 +27,7 @@ class PhysicsRegressor final : public Regressor {
     Eigen::Index outputs() const override { return sizes_.output_count; }
     Eigen::Index columns() const override { return sizes_.column_count; }
 
-    /// Number of operations as in the firmware.
+    /// Needs the same number of operations as the firmware.
     void evaluate(const MotionState& state, Eigen::MatrixXd& values) const override {
         std::vector<double> xi(static_cast<std::size_t>(3 * state.position.size()));
         for (Eigen::Index i = 0; i < state.position.size(); ++i) {
@@ -42,8 +42,7 @@ class PhysicsRegressor final : public Regressor {
         values = psi;
     }
 
-    /// Uses scalars with `lanes` derivatives at a time: about as many operations as n/4 times `lanes`
-    /// evaluations.
+    /// Uses scalars with `lanes` derivatives at a time. Cost: about n/4 times `lanes` evaluations.
     RegressorGradient pull_back(const MotionState& state, const Eigen::MatrixXd& gradient) const override {
         const Eigen::Index joints = state.position.size();
         RegressorGradient result{Eigen::VectorXd(joints), Eigen::VectorXd(joints)};

@@ -34,7 +34,7 @@ struct PhysicsProblem {
     const TrainedModel& model; ///< forgetting factor, input, features, outputs; P: no features
     const TrainingData& data;
     const RowList& rows;
-    const Eigen::MatrixXd& columns; ///< psi column_scale at `rows`, N x (m p) as of PhysicsColumns
+    const Eigen::MatrixXd& columns; ///< psi column_scale at `rows`, N x (m p) as in PhysicsColumns
 };
 
 /// A Gaussian prior of pi, in the units of PhysicsStart::parameters.
@@ -47,7 +47,7 @@ struct ParameterPrior {
 };
 
 /// Returns the regularised least-squares solution (paper, Section IV-B) of P: pi^ and its covariance under
-/// the prior. The prior's weight under forgetting is that of batch_start(). O(N m p^2 + p^3). Throws
+/// the prior. The prior has the same weight under forgetting as in batch_start(). O(N m p^2 + p^3). Throws
 /// InputError if the information matrix cannot be factored.
 CombinedPrior parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior);
 

@@ -24,9 +24,9 @@ double parameter_variance_factor(const TrainingSetup& setup);
 /// and scales; `motion`: the physics' motion parameters. Deterministic. O(R m P^2), R likelihood rows and 300
 /// random states.
 ///
-/// A column that was left out is a linear combination of the chosen ones, over the recording and, where that
-/// leaves it undetermined, over random states (positions within ± pi, velocities and accelerations as large
-/// as the recording's). Its parameter adds this combination to the others.
+/// A column that was left out is a linear combination of the chosen ones over the recording. If the recording
+/// does not determine the combination, random states do (positions within ± pi, velocities and accelerations
+/// of the recording's size). Its parameter adds this combination to the others.
 ParameterPrior robot_prior(const TrainingSetup& setup, const ColumnChoice& choice,
                            const Eigen::VectorXd& motion);
 

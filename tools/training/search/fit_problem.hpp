@@ -41,10 +41,10 @@ class FitProblem {
     /// kernel.
     std::unique_ptr<Likelihood> running() const;
 
-    /// Returns the start of this problem that is equivalent to `structured`, a problem of the input from
-    /// which this one's starts, at `theta`. If the physics uses rows of the input, the equivalence holds up
-    /// to beta^M: the input's filters are the paper's, and the physics' own ones are exact for ramps and
-    /// parabolas (see difference_motion()).
+    /// Returns the start of this problem that is equivalent to `theta` of the problem `structured`, whose
+    /// input is the one from which this input starts. If the physics uses rows of the input, the equivalence
+    /// holds up to beta^M: the input's filters are the paper's, and the physics' own filters are exact for
+    /// ramps and parabolas (see difference_motion()).
     Eigen::VectorXd start_from(const FitProblem& structured, const Eigen::VectorXd& theta) const;
 
     /// P: r = l = 0.

@@ -34,9 +34,10 @@ struct HoldOutPoint {
 std::vector<HoldOutPoint> hold_out_kernel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& outputs,
                                           Eigen::Index training, const PointCallback& done = {});
 
-/// Trains and evaluates physics alone, for gamma^2 from 1e-6 to 1e6, in factors of the root of ten, of the
-/// value at which prior and outputs have the same size. Outputs are weighted by their least-squares residual.
-/// `columns` N x (m p) as in PhysicsColumns. Returns nothing if least squares has no solution.
+/// Trains and evaluates physics alone, for gamma^2 from 1e-6 to 1e6 in factors of the root of ten. The unit
+/// of gamma^2 is the value at which prior and outputs have the same size. Outputs are weighted by their
+/// least-squares residual. `columns` N x (m p) as in PhysicsColumns. Returns nothing if least squares has no
+/// solution.
 std::optional<std::vector<HoldOutPoint>> hold_out_physics(const Eigen::MatrixXd& columns,
                                                           const Eigen::MatrixXd& outputs,
                                                           Eigen::Index training,

@@ -55,9 +55,8 @@ struct TrainingSetup {
 /// Throws InputError with the name of an output that is constant over the likelihood rows.
 void check_outputs_vary(const TrainingSetup& setup);
 
-/// Returns the columns of the physics that the recording identifies with the initial motion, and the units of
-/// their parameters (see TrainedPhysics, without the factor of the outputs). Throws InputError if there is
-/// none.
+/// Returns the columns of the physics that the recording identifies with the initial motion. Their parameters
+/// have the units of TrainedPhysics, without the factor of the outputs. Throws InputError if there is none.
 ColumnChoice choose_columns(const TrainingSetup& setup);
 
 /// Returns the model's output offset: the mean over the rows in motion for a centred NP, otherwise 0.

@@ -21,7 +21,7 @@ constexpr int newton_steps_most = 300;
 constexpr double longest_step = 3; // of a logarithm
 constexpr double damping_most = 1e12;
 
-/// The outputs' variances without physics, and a prior for which the physics has the same size.
+/// Returns the outputs' variances without physics, and a prior for which the physics has the same size.
 VectorXd first_guess(const LinearStatistics& statistics, PhysicsPrior prior) {
     const Index outputs = outputs_of(statistics);
     const auto samples = static_cast<double>(statistics.samples);

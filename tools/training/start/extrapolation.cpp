@@ -195,8 +195,8 @@ PhysicsBlock physics_block(const PhysicsProblem& problem, Index first, Index las
     return block;
 }
 
-/// Appends, for each output, a quarter of the squared errors on a block (two standard deviations) minus the
-/// variance of the parameters learned from the equations, times `factor`.
+/// Appends, for each output, the squared errors on a block divided by four (two standard deviations). The
+/// variance of the parameters learned from the equations, times `factor`, is subtracted.
 void predict_physics(const NormalEquations& equations, const ParameterPrior& prior, double factor,
                      const PhysicsBlock& block, std::vector<std::vector<double>>& unexplained) {
     const CovarianceFactor learned = information_factor(equations.information + prior.information, 1);

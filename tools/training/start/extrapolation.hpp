@@ -18,17 +18,17 @@ namespace dfdyn::tools {
 /// - prior_variance: away from all data, an output is assumed uniform within plus and minus its 99 %
 ///   quantile. Its variance about the offset is therefore quantile^2 / 3 + offset^2.
 /// - extra_noise: chosen so that two standard deviations contain 95.4 % of held-out errors near the data
-///   (novelty below 0.1). The errors are from five contiguous blocks in time, each predicted from the other
-///   four, and each of these from one (block cross-validation, because neighbouring rows are too similar to
-///   be held out individually).
+///   (novelty below 0.1). The errors are from block cross-validation, because neighbouring rows are too
+///   similar to be held out individually: five contiguous blocks in time, each predicted from the other four
+///   and from each single other one.
 ///
 /// Deterministic. At most 3000 rows are used for learning and 600 for prediction, evenly strided: O(n (2d)^2
 /// + 10 (2d)^3) with n = 6000.
 ExtrapolationModel measure_extrapolation(const TrainedModel& model, const TrainingData& data,
                                          const RowList& rows, const Eigen::MatrixXd& targets);
 
-/// Returns the variance of each output about its offset away from all data, in units of noise_std squared,
-/// for a uniform distribution within plus and minus its 99 % quantile at `rows`.
+/// Returns the variance of each output about its offset away from all data, in units of noise_std squared.
+/// The output is assumed uniform within plus and minus its 99 % quantile at `rows`.
 std::vector<double> output_variances(const TrainedModel& model, const TrainingData& data,
                                      const RowList& rows);
 
