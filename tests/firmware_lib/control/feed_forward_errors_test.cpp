@@ -16,7 +16,7 @@ using namespace dfdyn;
 using namespace dfdyn::tests;
 using namespace dfdyn::tests::told;
 
-/// A feed-forward beside an observer.
+/// A feed-forward with an observer.
 struct ObservedRun {
     ToldLearner learner;
     Forward forward;
@@ -59,7 +59,7 @@ TEST_CASE("with an observer a fast error of a forecast counts more than a slow o
     CHECK(share_with(20) < 0.2);
 }
 
-TEST_CASE("a constant error counts as far as it exceeds what the observer can take over") {
+TEST_CASE("a constant error counts only beyond the observer's limit") {
     const auto share_with = [](double observer_limit) {
         ObservedRun run(20, observer_limit);
         for (int knot = 0; knot < 500; ++knot) { // the nominal torque is wrong by ±40 N·m, the forecast by 90
@@ -84,7 +84,7 @@ TEST_CASE("a forecast that was absurd at one knot is used again within a second"
     }
 }
 
-TEST_CASE("the slow error of a forecast is forgotten while nothing is compared") {
+TEST_CASE("the slow error of a forecast decays while nothing is compared") {
     ObservedRun run(2, 100);
     run.go(6, 5, 0, [](int) { return 60; });
     run.compares = false;
@@ -119,7 +119,7 @@ struct CountedLearner {
     int knots = 0;
 };
 
-TEST_CASE("a feed-forward of several forecasts costs at most what its cost function says") {
+TEST_CASE("a feed-forward of several forecasts costs at most its declared cost") {
     using Torques = FeedForward<CountedLearner>::Torques;
     CountedLearner learner;
     FeedForward<CountedLearner> forward(learner, {.period_ns = period_ns,
@@ -148,7 +148,7 @@ TEST_CASE("a feed-forward of several forecasts costs at most what its cost funct
     }
 }
 
-TEST_CASE("in place of a nominal torque that is not finite the last one is used") {
+TEST_CASE("a nominal torque that is not finite is replaced by the last finite one") {
     ObservedRun run(0, 0);
     run.go(0.1, 10, 10, [](int) { return 10; });
     for (const double bad :

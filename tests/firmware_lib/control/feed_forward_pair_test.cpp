@@ -68,7 +68,7 @@ TEST_CASE("of two learners the more accurate one is used, and they are exchanged
     CHECK(run.largest_step <= 2 * 80 * period_s / 0.2); // both the share and the mixture change
 }
 
-TEST_CASE("where one learner has no prediction the other one's is used at once if it was right") {
+TEST_CASE("a missing forecast is replaced at once by the other learner's if that was accurate") {
     for (const bool first_is_used : {true, false}) {
         PairRun run;
         const auto [used, other] = run.used_and_other(first_is_used);
@@ -84,7 +84,7 @@ TEST_CASE("where one learner has no prediction the other one's is used at once i
     }
 }
 
-TEST_CASE("a rejected forecast is not commanded in place of one that is unknown") {
+TEST_CASE("a rejected forecast does not replace an unknown one") {
     for (const bool first_is_used : {true, false}) {
         PairRun run;
         const auto [used, other] = run.used_and_other(first_is_used);
@@ -96,7 +96,7 @@ TEST_CASE("a rejected forecast is not commanded in place of one that is unknown"
     }
 }
 
-TEST_CASE("an absurd forecast moves a joint no further than one of its torque limit does") {
+TEST_CASE("an absurd forecast moves a joint no further than a forecast at its torque limit") {
     const auto farthest = [](double absurd) {
         PairRun run;
         run.first.forecast = 49; // an error of 1 N·m
@@ -139,7 +139,7 @@ TEST_CASE("learners with different numbers of forecasts form a pair, and unknown
     CHECK(predicted(reversed) == std::array<double, 4>{3, unknown, unknown, -7});
 }
 
-TEST_CASE("a learner without a prediction does not earn the reputation of the other one") {
+TEST_CASE("a learner gains no weight while it has no prediction") {
     PairRun run;
     run.first.forecast = 50;
     run.second.knows = false;
@@ -150,15 +150,15 @@ TEST_CASE("a learner without a prediction does not earn the reputation of the ot
     CHECK(run.last == Approx(50).margin(1)); // with equal shares it would be 10
 }
 
-TEST_CASE("a wrong learner has no larger share because another one has no prediction") {
+TEST_CASE("a wrong learner gains no share while another one has no prediction") {
     PairRun run;
-    run.first.forecast = -30; // an error of 80 N·m; that of the nominal torque is 40
+    run.first.forecast = -30; // an error of 80 N·m; the nominal torque has an error of 40
     run.second.knows = false;
     run.go(3);
     CHECK(run.forward.share()[0] < 0.1);
 }
 
-TEST_CASE("other forecasts are combined with the shares of the command's, and unknown ones left out") {
+TEST_CASE("other forecasts are combined with the command's shares, without unknown ones") {
     PairRun run;
     run.first.forecast = 50;
     run.second.forecast = -30;

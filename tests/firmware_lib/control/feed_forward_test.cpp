@@ -76,12 +76,12 @@ TEST_CASE("a wrong learner is excluded within a second, and included when it is 
     CHECK(run.forward.share()[0] > 0.9);
 }
 
-TEST_CASE("a learner without a prediction for the next knot is not charged for it") {
+TEST_CASE("a learner without a prediction for the next knot loses no weight") {
     Run run;
     run.learner.forecast = 50;
     const double knot_s = ticks_per_sample * period_s;
     for (int knot = 0; knot < 600; ++knot) {
-        run.learner.knows = knot % 3 != 0; // what it writes then is 0
+        run.learner.knows = knot % 3 != 0; // it then writes 0
         run.go(knot_s, 45, 50);
     }
     run.learner.knows = true;

@@ -54,7 +54,7 @@ class Rig {
     long tick_ = 0;
 };
 
-TEST_CASE("a joint without position keeps its correction, and gets it back without a step") {
+TEST_CASE("a joint without position keeps its correction and returns to it without a step") {
     Rig rig;
     rig.go(700);
     const float before = rig.correction[joint];
@@ -70,7 +70,7 @@ TEST_CASE("a joint without position keeps its correction, and gets it back witho
     CHECK(rig.controller.ticks_without_sample(joint) == 0);
 }
 
-TEST_CASE("without positions for long the correction goes to zero without a step") {
+TEST_CASE("after a long gap of positions the correction ramps to zero without a step") {
     Rig rig;
     rig.go(700);
     REQUIRE(std::abs(rig.correction[joint]) > 3 * largest_step);
@@ -80,7 +80,7 @@ TEST_CASE("without positions for long the correction goes to zero without a step
     CHECK(rig.controller.ticks_without_sample(joint) == 200);
 }
 
-TEST_CASE("a sample that is repeated is not a new measurement") {
+TEST_CASE("a repeated sample is not a new measurement") {
     Rig rig;
     rig.go(700);
     const JointController::Efforts before = rig.correction;
@@ -93,7 +93,7 @@ TEST_CASE("a sample that is repeated is not a new measurement") {
     CHECK(rig.controller.ticks_without_sample(0) == JointController::hold_ticks);
 }
 
-TEST_CASE("one stamp far from all others costs one measurement") {
+TEST_CASE("a single wrong stamp costs one measurement") {
     constexpr std::int64_t hour_ns = 3'600'000'000'000;
     for (const std::int64_t away : {hour_ns, -hour_ns, std::numeric_limits<std::int64_t>::max() / 2}) {
         CAPTURE(away);
@@ -106,7 +106,7 @@ TEST_CASE("one stamp far from all others costs one measurement") {
     }
 }
 
-TEST_CASE("a clock that is set is followed within a few measurements") {
+TEST_CASE("stamps are accepted again within a few measurements after the clock was set") {
     constexpr std::int64_t hour_ns = 3'600'000'000'000;
     for (const std::int64_t away : {hour_ns, -hour_ns}) {
         CAPTURE(away);
@@ -121,7 +121,7 @@ TEST_CASE("a clock that is set is followed within a few measurements") {
     }
 }
 
-TEST_CASE("what a controller has learned is restored by the next one") {
+TEST_CASE("a new controller restores the learned state of another one") {
     Rig rig;
     rig.go(3000);
     std::vector<std::byte> snapshot(JointController::Learned::snapshot_capacity);

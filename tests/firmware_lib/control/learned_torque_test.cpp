@@ -30,7 +30,7 @@ bool close(const typename Model::Scalar* a, const Storage<typename Model::Scalar
            std::abs(static_cast<double>(a[1] - b[1])) < tolerance;
 }
 
-/// Returns a learner that has learned the moving arm for a while.
+/// Returns a learner that has learned from the moving arm.
 template <class Model>
 std::unique_ptr<LearnedTorque<Model>> learner_of(const typename Model::Constants& constants,
                                                  std::mt19937_64& engine, int samples = 400) {

@@ -25,7 +25,7 @@ TEST_CASE("a view of a sample reads and writes the sample's own numbers") {
 
 using UdFloat = TestModel<float>;
 
-TEMPLATE_TEST_CASE("a view of the weights has a row per output, whatever lies between them", "", UdFloat) {
+TEMPLATE_TEST_CASE("a view of the weights has one row per output for any stride", "", UdFloat) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);

@@ -23,7 +23,7 @@ using FuzzSample = FuzzModel::Sample;
 constexpr float jump = 1e6F;
 constexpr float position_limit = 1e7F;
 
-/// Constants for which every jump of joint 1 makes the inputs invalid while it is in the window. All rows sum
+/// Constants such that every jump of joint 1 makes the inputs invalid while it is in the window. All rows sum
 /// to -1 without small entries and all frequencies are positive, so nothing cancels.
 FuzzModel::Constants fuzz_constants(std::mt19937_64& engine) {
     FuzzModel::Constants constants{};

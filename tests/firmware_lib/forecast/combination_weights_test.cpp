@@ -9,7 +9,7 @@
 // Weights of members whose deviations differ, and after refused samples.
 namespace forecast_combination_test {
 
-TEST_CASE("once errors are known the ratio of a member's variances counts and not their size") {
+TEST_CASE("once errors are known only the ratio of a member's variances counts") {
     const double unjudged = Combination<double>::calibrated_variance_factor;
     Combination<double> combined({}, {}, 50, noise<double>.data(), unjudged);
     Values<double> deviations = noise<double>;
@@ -101,7 +101,7 @@ void learn_tracking(Combination<double>& combined) {
     combined.learn(one_step.data(), ahead.data(), measured.data());
 }
 
-TEST_CASE("a member that only tracks has less weight in predictions ahead and when learning stops") {
+TEST_CASE("a member that only tracks has less weight in predictions ahead and without learning") {
     Combination<double> combined = scaled_combination<double>(50);
     for (int t = 0; t < 500; ++t) {
         learn_tracking(combined);

@@ -289,13 +289,12 @@ void check_day(std::mt19937_64& engine, std::int64_t samples) {
     }
 }
 
-TEST_CASE("minutes of moving or standstill or both in turn give the same error in float as in double") {
+TEST_CASE("minutes of moving, standing still or both give the same error in float as in double") {
     DFDYN_SEEDED_ENGINE(engine);
     check_day<32>(engine, slow_build ? 120'000 : 600'000);
 }
 
-TEST_CASE("a day of moving or standstill or both in turn gives the same error in float as in double",
-          "[.long]") {
+TEST_CASE("a day of moving, standing still or both gives the same error in float as in double", "[.long]") {
     DFDYN_SEEDED_ENGINE(engine);
     check_day<32>(engine, 100'000'000);
     check_day<100>(engine, 10'000'000);

@@ -22,7 +22,7 @@ constexpr dfdyn::ContactLimits<double> limits[2]{limit, limit};
 /// Function of the time in seconds.
 using Signal = std::function<double(double)>;
 
-/// A detector of two joints. The second one stands and has no error.
+/// A detector of two joints. The second one is stationary and has no error.
 struct Arm {
     Detector detector{{}, limits};
     std::int64_t time_ns = 0;
@@ -99,14 +99,14 @@ TEST_CASE("deviations of several joints add to one contact", "[contacts]") {
     CHECK(contact(0.95, -0.95));
 }
 
-TEST_CASE("errors that change slowly are no contact however large they become", "[contacts]") {
+TEST_CASE("slowly changing errors of any size are no contact", "[contacts]") {
     Arm arm;
     arm.run(60, still, [](double t) { return 0.5 * t; });
     CHECK(arm.contacts == 0);
 }
 
 TEST_CASE("friction that a start, stop or reversal releases is no contact", "[contacts]") {
-    // The error of a standing joint is what its friction bears; in motion the model is accurate.
+    // The error of a stationary joint is the torque that its friction bears; in motion the model is accurate.
     const double borne = GENERATE(-5.0, 5.0);
     Arm arm;
     arm.run(10, still, [borne](double t) { return borne * std::min(t / 8, 1.0); });
@@ -117,7 +117,7 @@ TEST_CASE("friction that a start, stop or reversal releases is no contact", "[co
     CHECK(arm.contacts == 0);
 }
 
-TEST_CASE("an error that stays is accepted as a change of the arm after three seconds, once", "[contacts]") {
+TEST_CASE("a persistent error is accepted as a change of the arm after three seconds, once", "[contacts]") {
     // Larger than what the baseline follows in three seconds.
     Arm arm;
     arm.run(20, still, push(8, 20));
@@ -145,7 +145,7 @@ struct LimitedArm {
         : limits{{{1, 1, 1}, {0.1, 0.1, 0.1}, relative, any, acceleration}, limit}, arm{{{}, limits}} {}
 };
 
-TEST_CASE("an error that is the usual share of a change of the prediction is no contact", "[contacts]") {
+TEST_CASE("an error in the usual proportion to a change of the prediction is no contact", "[contacts]") {
     const auto contacts = [](double relative) {
         LimitedArm one(relative, any);
         const auto jump = [](double t) { return t < 2 ? 0.0 : 4.0; };
@@ -198,7 +198,7 @@ TEST_CASE("a second push is a contact of its own if the error of the model remai
     CHECK(arm.contacts == 2);
 }
 
-TEST_CASE("nothing that is not finite, late or early becomes a contact or blinds the detector",
+TEST_CASE("non-finite values and wrong stamps neither cause a contact nor disable the detector",
           "[contacts]") {
     using Limits = std::numeric_limits<double>;
     for (const double bad : {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {

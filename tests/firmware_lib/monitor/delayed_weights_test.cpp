@@ -9,7 +9,7 @@ namespace delayed_weights_test {
 
 using namespace dfdyn;
 
-TEST_CASE("held weights are between one and two periods old", "[monitor]") {
+TEST_CASE("delayed weights are between one and two periods old", "[monitor]") {
     DelayedWeights<float, 2> held({});
     for (int period = 0; period < 5; ++period) {
         const auto now = static_cast<float>(10 + period);

@@ -61,7 +61,7 @@ TEMPLATE_TEST_CASE("the monitor reports cause, place and size of a change withou
     }
 }
 
-TEST_CASE("a change that only a payload without mass could explain is not named a payload", "[monitor]") {
+TEST_CASE("a change that requires a payload without mass is not classified as a payload", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto fixed = constants<float>();
     TestMonitor<float> monitor(fixed);

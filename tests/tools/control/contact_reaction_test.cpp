@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reactions of a loop to contacts that the learner's errors show.
+// Reactions of a loop to contacts, which are detected from the learner's errors.
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
@@ -42,7 +42,7 @@ LoopModel learned_model() {
     return model;
 }
 
-/// What happens from a push on.
+/// Outcome of a run from the start of a push.
 struct Outcome {
     std::vector<TakenAction> actions;
     std::vector<PushReaction> reactions;
@@ -186,12 +186,12 @@ TEST_CASE("a loop that yields at a contact has gravity torque alone and holds wh
     CHECK(outcome.moved > 2 * run(FindingAction::hold).moved);
 }
 
-TEST_CASE("a loop yields with a delay of the bus, too", "[contacts]") {
+TEST_CASE("a loop also yields with a delay of the bus", "[contacts]") {
     const BusDescription bus = one_drive(at_sync);
     check_yields(run(FindingAction::yield, push_nm, 0.3, &bus));
 }
 
-TEST_CASE("a contact that does not end lets the motion stand", "[contacts]") {
+TEST_CASE("after a contact that does not end the motion remains stopped", "[contacts]") {
     const Outcome outcome = run(FindingAction::hold, push_nm, 8);
     CHECK(outcome.state == LoopState::running);
     CHECK(outcome.actions.size() == 1);
@@ -224,7 +224,7 @@ TEST_CASE("without a push, or without a chosen reaction, a loop does nothing abo
     CHECK(outcome.state == LoopState::running);
 }
 
-TEST_CASE("a loop with a reaction to contacts refuses a model without limits of contacts", "[contacts]") {
+TEST_CASE("a loop with a reaction to contacts rejects a model without contact limits", "[contacts]") {
     LoopModel model = learned_model();
     model.model.contact = {};
     LoopLimits limits;
@@ -249,7 +249,7 @@ void check_smooth(const std::vector<Reference>& path) {
     }
 }
 
-TEST_CASE("a task that nobody pauses is unchanged", "[contacts]") {
+TEST_CASE("a task without a pause is unchanged", "[contacts]") {
     const std::unique_ptr<Task> plain = sine_task();
     PausableTask task(sine_task(), 0.002);
     for (int i = 0; i < 5000; ++i) {
@@ -260,7 +260,7 @@ TEST_CASE("a task that nobody pauses is unchanged", "[contacts]") {
     }
 }
 
-TEST_CASE("a paused task rests on its path for good", "[contacts]") {
+TEST_CASE("a paused task rests on its path permanently", "[contacts]") {
     PausableTask task(sine_task(), 0.002);
     std::vector<Reference> path;
     for (int i = 0; i < 5000; ++i) {

@@ -47,7 +47,7 @@ class FaultyLoop {
         tools::MemoryBus::join(loop_end_, wire_);
     }
 
-    /// Runs until `time_s` since the motion began, whether or not the loop has stopped by then.
+    /// Runs until `time_s` since the motion began, also after the loop has stopped.
     void run_to(
         double time_s, const Faults& faults = [](int) { return LoopFault{}; }) {
         while (moving_tick_ * period_s_ < time_s) {

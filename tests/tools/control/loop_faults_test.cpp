@@ -132,7 +132,7 @@ TEST_CASE("without faults the loop and the devices alternate in the same way ove
     CHECK(loop->counters().running == 1000);
 }
 
-TEST_CASE("lost cycles of the devices give the loop as many ticks without readings") {
+TEST_CASE("each lost cycle of the devices gives the loop one tick without readings") {
     const BusDescription bus = one_drive(at_sync);
     for (const BusDescription* const link : {static_cast<const BusDescription*>(nullptr), &bus}) {
         const std::vector<Tick> sound = run("[]", 0.4, link);

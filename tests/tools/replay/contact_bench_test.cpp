@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pushes of known onset, added to recordings of real arms that nobody touched: J'f of a force on the tip, in
-// the unit of the outputs. The reference is a least-squares fit of rigid body and friction with a threshold
-// on its low-passed error.
+// Pushes of known onset, added to recordings of real arms without contact: J'f of a force on the tip, in the
+// unit of the outputs. The reference is a least-squares fit of rigid body and friction with a threshold on
+// its low-passed error.
 #include "tests/support/catch.hpp"
 #include "tests/tools/replay/contact_arm.hpp"
 #include "tools/replay/opponents/rigid_body.hpp"
@@ -295,7 +295,7 @@ TEST_CASE("pushes added to runs of real arms are found, and compared with least 
     const Robot tx40 = contact_robot("tx40/tx40.urdf", "tool0");
     const std::string nist = "ur5_nist/halfspeed_payload_0p726kg.csv";
     const std::string staubli = "tx40_figaroh/tx40_5kHz.csv";
-    // In sight when the constants of the detector were chosen.
+    // Known when the constants of the detector were chosen.
     const auto chosen =
         compare({"UR5, trained on No6, tested on No5, No7 and No9",
                  ur5,
@@ -306,7 +306,7 @@ TEST_CASE("pushes added to runs of real arms are found, and compared with least 
                  ur5_coulomb(),
                  10});
     CHECK(chosen.first > chosen.second);
-    // These chose no constant, but were in sight when the limits became those of typical blocks.
+    // Not used to choose a constant, but known when the limits became those of typical blocks.
     const auto nist_found = compare({"UR5 of NIST, first 32 s, tested on the rest",
                                      ur5,
                                      OutputKind::motor_current,

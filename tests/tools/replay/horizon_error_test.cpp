@@ -72,7 +72,7 @@ std::vector<HorizonIndex> indices_of(const std::vector<Step>& steps, std::size_t
     return errors.indices();
 }
 
-TEST_CASE("the horizon index is that of the paper") {
+TEST_CASE("the horizon index equals the paper's") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<Step> steps = random_steps(engine, 40);
     for (const std::size_t horizon : {std::size_t{1}, std::size_t{7}, std::size_t{25}}) {

@@ -78,7 +78,7 @@ TEST_CASE("a recording that does not fit the model is rejected") {
                       "run.csv: expected positions of 2 joints as the model has, found 3");
 }
 
-TEST_CASE("an endless replay keeps its last ticks and passes all on without further memory") {
+TEST_CASE("an endless replay keeps its last ticks and passes on all ticks without further memory") {
     class Counter final : public TickSink {
       public:
         void take(const ReplayedRecording& replayed, std::size_t tick) override {

@@ -40,7 +40,7 @@ std::string bytes(const Robot& robot, const Scenario& scenario) {
     return recording.str() + truth.str();
 }
 
-TEST_CASE("rate and jitter of a recording are those of the scenario and the truth has no stamp error") {
+TEST_CASE("a recording has the scenario's rate and jitter and the truth has no stamp error") {
     Scenario scenario = quiet_scenario(1);
     scenario.recording.rate_hz = 100;
     scenario.recording.first_at_s = 0.5;

@@ -56,7 +56,7 @@ TEST_CASE("an unknown core is rejected with the nearest known one") {
                                                   "\"cortex-m7\"?)"));
 }
 
-TEST_CASE("smaller models are listed with what they lose, in text and in JSON") {
+TEST_CASE("smaller models are listed with their larger error, in text and in JSON") {
     TrainedModel model = benchmark_model(4, 100);
     std::ostringstream alone;
     print_footprint(alone, model, targets().front());

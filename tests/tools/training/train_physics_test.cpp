@@ -193,7 +193,7 @@ TEST_CASE("SP2 uses given parameters") {
     CHECK(result.physics->columns.size() == 6);
 }
 
-TEST_CASE("the likelihood of DFR is at least that of DFSR") {
+TEST_CASE("DFR has at least the likelihood of DFSR") {
     // Without filters of its own, the prior of SPK has different units for the two inputs.
     const auto [model, own_motion] = GENERATE(table<const Structure*, bool>(
         {{&structures::NP, true}, {&structures::SPK, true}, {&structures::SP, false}}));
@@ -207,7 +207,7 @@ TEST_CASE("the likelihood of DFR is at least that of DFSR") {
     arm.options.input = InputKind::DFR;
     arm.options.starts = 1;
     CHECK(tools::train(arm.data, arm.options).model.training.log_likelihood >=
-          // The tolerance is that of the search; the filters are truncated differently.
+          // The tolerance is the search's; the filters are truncated differently.
           structured - (own_motion ? 1e-6 : 1e-3));
 }
 

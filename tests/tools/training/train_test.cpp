@@ -280,7 +280,7 @@ TEST_CASE("training rejects data from which it cannot learn") {
             message(data, options) ==
             "training data: expected outputs that vary, found tau2 constant at 2.5 over the rows in motion");
     }
-    SECTION("a number that is none") {
+    SECTION("a value that is not a number") {
         data.positions(2, 0) = std::nan("");
         CHECK(message(data, options) ==
               "training data: row 2, position of joint 1: expected a finite number, found nan");

@@ -123,7 +123,7 @@ std::vector<TrainedModel> three_models(const Recording& learned) {
     return models;
 }
 
-/// Checks that no output's error of the models' combination exceeds that of their best by more than 5 %.
+/// Checks that no output's error of the models' combination exceeds the best model's by more than 5 %.
 void check_combination(std::span<const TrainedModel> models, const Recording& learned,
                        const Recording& unseen, dfdyn::Budget budget) {
     const VectorXd combined = replayed(models, learned, unseen, budget).error;

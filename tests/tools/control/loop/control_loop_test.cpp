@@ -250,7 +250,7 @@ TEST_CASE("every cause stops the loop within its patience and without a jump of 
     }
 }
 
-TEST_CASE("a scenario or model that the loop cannot use is rejected with what is expected") {
+TEST_CASE("a scenario or model that the loop cannot use is rejected with the expected value") {
     const auto refusal = [](const Scenario& scenario, const Robot& robot, const LoopModel* model) {
         try {
             make_control_loop(robot, scenario, "s.json", model);

@@ -106,7 +106,7 @@ TEST_CASE("an action that does not suit its cause is rejected and the suitable o
           "bias_moved, external_contact, sensor_frozen, found \"friction\"");
 }
 
-TEST_CASE("after friction has tripled a learner that relearns is as accurate as before no later") {
+TEST_CASE("after tripled friction a learner that relearns recovers no later") {
     const std::string fault = R"([{"kind": "friction_step", "factor": 3, "from_s": 24}])";
     const Outcome without = run(fault, {}, 42);
     const Outcome with = run(fault, {"friction_changed=relearn"}, 42);
@@ -144,7 +144,7 @@ TEST_CASE("a change with the action stop stops the loop within four seconds and 
     CHECK(outcome.end_s < 44);
 }
 
-TEST_CASE("a noted stop is kept whatever is noted after it") {
+TEST_CASE("the first stop is kept when later reactions follow") {
     TakenActions actions;
     CHECK_FALSE(actions.stop());
     actions.add({1, Cause::friction, 0, FindingAction::stop});
@@ -159,7 +159,7 @@ TEST_CASE("a noted stop is kept whatever is noted after it") {
     CHECK(actions.list().size() == 64);
 }
 
-TEST_CASE("a stop is in a full list of reactions, too") {
+TEST_CASE("a full list of reactions still contains the stop") {
     TakenActions actions;
     for (int i = 0; i < 100; ++i) {
         actions.add({2, Cause::friction, 1, FindingAction::relearn});

@@ -124,7 +124,7 @@ TEST_CASE("a joint that presses at its torque limit without moving stops and one
     CHECK(pressing.tick(0, 0, -50) == StopCause::torque_limit);
 }
 
-TEST_CASE("a reference that is moved to a joint at rest is no frozen encoder") {
+TEST_CASE("a reference moved to a joint at rest is no frozen encoder") {
     Joint joint;
     for (int tick = 0; tick < 50; ++tick) {
         REQUIRE(joint.tick(0.1, 0.05) == StopCause::none);

@@ -97,7 +97,7 @@ TEST_CASE("a changing error is extrapolated for a bounded time with at most the 
     }
 }
 
-TEST_CASE("only the joint whose reading is missing coasts") {
+TEST_CASE("only the joint without a reading is extrapolated") {
     PositionFeedback loop = after(20);
     const double before = loop.torque()[1];
     loop.advance();
@@ -122,7 +122,7 @@ TEST_CASE("a reading that would need an impossible acceleration is reported as i
     CHECK_FALSE(loop.regular());
 }
 
-TEST_CASE("a reference that is moved is no reading that jumped") {
+TEST_CASE("a moved reference does not count as a jump of the reading") {
     PositionFeedback loop = after(20);
     const double rate = loop.error_rate()[0];
     const JointVector distance = JointVector::Constant(2, 0.3);

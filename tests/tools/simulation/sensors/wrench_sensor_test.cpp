@@ -19,7 +19,7 @@ WrenchSensorModel fine() {
     return model;
 }
 
-/// Ratio of the amplitude of the reading to that of the wrench, a sine of `frequency_hz`.
+/// Ratio of the reading's amplitude to the wrench's, for a sine of `frequency_hz`.
 double gain(const WrenchSensorModel& model, double frequency_hz) {
     WrenchSensor sensor(model, period_s, 1);
     double sine = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Training measures how far the outputs deviate away from its data; these tests measure the estimator's
+// Training measures the deviation of the outputs away from its data; these tests measure the estimator's
 // predictions.
 #include "tools/training/start/extrapolation.hpp"
 
@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 /// Error relative to the outputs' mean in the training data, and coverage, per output.
 struct Outcome {
-    VectorXd error;    ///< rms relative to that of the constant prediction
+    VectorXd error;    ///< rms relative to the constant prediction's
     VectorXd coverage; ///< share of samples within two standard deviations
 };
 
