@@ -32,7 +32,7 @@ sed -nE 's/^[0-9]+: (cortex-m[0-9a-z-]+: )/\1/p' "$scratch"/*.txt | awk '
 
 {
     sed '/^<!-- cortex-m: written/q' "$page"
-    echo "| core | scalar | n | 2d | predict | predict and learn | cycles each may take | flash | RAM | of it state | stack | stack foretold |"
+    echo "| core | scalar | n | 2d | predict | predict and learn | cycles each may take | flash | RAM | of it state | stack | stack bound |"
     echo "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
     cat "$scratch/rows"
     sed -n '/^<!-- cortex-m: end/,$p' "$page"

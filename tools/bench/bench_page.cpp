@@ -95,11 +95,11 @@ ReportTable tick_table(const BenchResults& results) {
         table.rows.push_back(std::move(row));
     }
     table.note =
-        "error: of the predictions after " + std::to_string(verified_ticks) +
-        " ticks against the same regression solved at once in double, at most, over their rms; more than " +
+        "error: largest difference of the predictions after " + std::to_string(verified_ticks) +
+        " ticks from the batch solution in double, relative to their rms; a learner with more than " +
         rounded_text(tolerated_error("float")) + " in float or " + rounded_text(tolerated_error("double")) +
-        " in double is wrong, and no time is shown. spread: distance of the quartiles over the median. "
-        "undisturbed: share of the repetitions that count; where it is below 10, all count.";
+        " in double counts as wrong, and its time is not shown. spread: interquartile range over the median. "
+        "undisturbed: share of the valid repetitions; below 10, all repetitions are used.";
     return table;
 }
 
@@ -149,10 +149,9 @@ std::string model_words(const ModelBench& models) {
 
 std::string endurance_words(const EnduranceBench& endurance) {
     return "Long runs: ten stretches of " + std::to_string(endurance.ticks) +
-           " ticks each under forgetting, nine tenths of each standing still; the states after the first and "
-           "after the tenth then tick in turn. Ticks that take back a variance take longer, and how many "
-           "they are is up to the "
-           "motion, so the ninetieth percentile is compared, which is one of these. Moving: " +
+           " ticks each with forgetting, nine tenths of each at standstill. The states after the first and "
+           "the tenth stretch then tick in turn. The 90th percentile is compared: it is a tick that bounds "
+           "a variance. These ticks take longer, and their number depends on the motion. Moving: " +
            formatted("%+.1f %%", 100 * endurance.change_moving()) +
            ", standing: " + formatted("%+.1f %%", 100 * endurance.change_standing()) +
            "; denormal numbers in the last state: " + std::to_string(endurance.denormals) + ".";
@@ -171,8 +170,8 @@ std::string loop_words(const LoopBench& loop) {
     return "The loop: " + std::to_string(loop.pace.ticks) +
            " ticks at 1 kHz, six joints, six outputs, model NP with 200 columns, " +
            std::to_string(loop.learned) +
-           " samples learned, each in its tick (the first ones fill the window), beside a thread that works "
-           "on 64 MiB" +
+           " samples learned, each in its tick (the first ones fill the window). Another thread works on "
+           "64 MiB" +
            (loop.cores > 1 ? " on another core" : ", on the only core") +
            ". Deadlines missed: " + std::to_string(loop.pace.missed) + ". " +
            (loop.not_real_time.empty()
@@ -235,12 +234,11 @@ PageChart time_chart(const TickBench& bench) {
 FigurePage bench_page(const BenchResults& results) {
     FigurePage page;
     page.title = "On the host";
-    page.summary = "One tick: predict six outputs for a row of 2d columns, fold the row in, have the next "
-                   "weights; one core, nothing forgotten (with forgetting: the long runs below). "
-                   "All learners take turns within one run, so that what else the machine does hits them "
-                   "alike; repetitions "
-                   "during which the system took the core away, or next to which a probe of the processor's "
-                   "speed was below 97 % of its best, do not count.";
+    page.summary = "One tick predicts six outputs for a row of 2d columns, learns the row and computes the "
+                   "next weights, on one core and without forgetting (with forgetting: the long runs "
+                   "below). All learners alternate within one run, so that other load of the machine "
+                   "affects all equally. A repetition is valid if the system did not interrupt it and a "
+                   "probe of the processor's speed before and after it reached 97 % of its best.";
     if (!results.machine.optimised) {
         page.summary = "THIS PROGRAM IS NOT OPTIMISED: its times mean nothing. " + page.summary;
     }

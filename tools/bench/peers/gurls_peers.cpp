@@ -81,11 +81,10 @@ const Peer gurls_peer{[](const RegressionTask& task) {
                           one.push_back(std::make_unique<RecursiveCholesky>(task));
                           return one;
                       },
-                      "GURLS (the paper's tool) is not in Debian, and does not build against today's Boost. "
-                      "Its stand-in makes the same calls of "
-                      "BLAS for a sample, in the same order in memory, and the same copies of the factor; "
-                      "nothing else, so that GURLS cannot be "
-                      "faster. iCub's learningMachine is not measured here."};
+                      "GURLS (the paper's tool) is not in Debian and does not build with the present Boost. "
+                      "Its stand-in makes the same BLAS calls for a sample, in the same memory order, and "
+                      "the same copies of the factor. It does nothing else, so GURLS cannot be faster. "
+                      "iCub's learningMachine is not measured here."};
 
 } // namespace dfdyn::tools
 
