@@ -166,7 +166,7 @@ struct SizeRecord {
     std::int64_t flash_bytes = 0;
     std::int64_t ram_bytes = 0;
     std::int64_t tick_operations = 0;
-    double error = 0; ///< mean nRMSE over the outputs, one step ahead, on rows that trained nothing
+    double error = 0; ///< mean nRMSE over the outputs, one step ahead, on held-out rows
 };
 
 /// Origin of the constants.

@@ -51,8 +51,8 @@ void print_smaller(std::ostream& out, const TrainedModel& model) {
         return;
     }
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "smaller models (error on rows that trained nothing; this model: %.3f):\n", own->error);
+    std::snprintf(text, sizeof text, "smaller models (error on held-out rows; this model: %.3f):\n",
+                  own->error);
     out << text;
     for (const SizeRecord& size : smaller) {
         std::snprintf(

@@ -42,7 +42,7 @@ struct TickInstructions {
 TickInstructions instructions_of(const TrainedModel& model, const Target& target);
 
 /// Prints flash, RAM with stack, and instructions of `model` on `target`; then the smaller models that its
-/// training compared, with their errors on rows that trained nothing.
+/// training compared, with their errors on held-out rows.
 void print_footprint(std::ostream& out, const TrainedModel& model, const Target& target);
 
 /// Returns the same figures as JSON, schema `dfdyn.footprint/1`.
