@@ -148,7 +148,7 @@ void ClosedLoop::run_to(double time_s, const std::function<void(const ClosedLoop
 void ClosedLoop::check_waiting() const {
     constexpr double longest_s = 30;
     if (static_cast<double>(tick_) * period_s_ > longest_s) {
-        throw InputError("expected positions of all joints, found none that can be believed for 30 s");
+        throw InputError("expected valid positions of all joints within 30 s, found none");
     }
 }
 

@@ -109,10 +109,10 @@ ReplayedBus replay_log(RuntimeEstimator& estimator, std::span<const TrainedModel
 
 void print_bus(std::ostream& out, const BusFigures& figures) {
     out << "bus: " << figures.frames << " frames\n";
-    print(out, "frames that nobody in the description sends", figures.unknown);
-    print(out, "frames of another form than described", figures.rejected);
+    print(out, "frames with identifiers that the description does not have", figures.unknown);
+    print(out, "frames with invalid content", figures.rejected);
     print(out, "frames lost before they were read", figures.counters.dropped);
-    print(out, "times the controller lost frames", figures.counters.controller_overruns);
+    print(out, "times that the controller lost frames", figures.counters.controller_overruns);
     print(out, "error frames", figures.counters.error_frames);
     print(out, "times bus-off", figures.counters.bus_off);
     print(out, "times the interface went down", figures.counters.interface_down);

@@ -120,7 +120,7 @@ std::string summary_sentence(const ReplaySummary& summary) {
                                      ? " ticks, every prediction made before its sample was learned. "
                                      : " ticks, predicted without learning. ");
     return learning + (stretches == 0
-                           ? "Nowhere does the measurement contradict the model."
+                           ? "The measurement does not contradict the model anywhere."
                            : "The measurement contradicts the model in " + std::to_string(stretches) +
                                  (stretches == 1 ? " stretch." : " stretches."));
 }

@@ -47,8 +47,8 @@ void SimulatedPlant::advance_to(double time_s) {
     constexpr double runaway = 1e4; // rad/s
     if (!arm_.state().position.allFinite() || arm_.state().velocity.cwiseAbs().maxCoeff() > runaway) {
         throw InputError("t = " + number_text(time_s) +
-                         " s: expected the arm to stay under control, found it running away: gains, friction "
-                         "or integration_rate_hz do not fit");
+                         " s: expected a stable simulation, found a diverging one: check gains, "
+                         "friction and integration_rate_hz");
     }
 }
 

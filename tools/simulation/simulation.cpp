@@ -50,8 +50,8 @@ void Simulation::control() {
     const std::string where = "t = " + number_text(static_cast<double>(step_) * period_s_) + " s: ";
     check_limits(robot_, reference_.position, where + "reference of ");
     if (!arm_.state().position.allFinite() || arm_.state().velocity.cwiseAbs().maxCoeff() > 1e4) {
-        throw InputError(where + "expected the arm to stay under control, found it running away: gains, "
-                                 "friction or integration_rate_hz do not fit");
+        throw InputError(where + "expected a stable simulation, found a diverging one: check gains, "
+                                 "friction and integration_rate_hz");
     }
     arm_.apply(controller_.torque(reference_, encoders_.reading(), control_derivatives_.velocity()));
     reference_ = task_->next();

@@ -268,7 +268,7 @@ SizeChoice choose_sizes(std::span<const Recording> recordings, OutputKind output
 
 void print_choice(std::ostream& out, const SizeChoice& choice, const TargetBudget& budget) {
     out << "sizes: " << choice.tried
-        << " candidates, trained on the first 70 % of the rows, judged on the rest\n";
+        << " candidates, trained on the first 70 % of the rows, evaluated on the rest\n";
     if (choice.smaller) {
         print_row(out, "smaller", *choice.smaller, fits(choice.smaller->needs, budget));
     }

@@ -77,7 +77,8 @@ TEST_CASE("frames become predictions and frames of another arm are reported") {
 
     const Outcome other = bench.replay(log + bench.bus("other.json"));
     CHECK(other.status == 1);
-    CHECK_THAT(other.out, ContainsSubstring("x frames that nobody in the description sends: first 0x702"));
+    CHECK_THAT(other.out, ContainsSubstring(
+                              "x frames with identifiers that the description does not have: first 0x702"));
 }
 
 TEST_CASE("bus options without a bus are rejected") {

@@ -176,7 +176,7 @@ TEST_CASE("simulate writes a recording and the truth or nothing at all") {
     std::filesystem::remove(directory.path() / "run.csv");
     const Outcome outcome = run_program(directory, call);
     CHECK(outcome.status == 2);
-    CHECK_THAT(outcome.error, Catch::Matchers::ContainsSubstring(" mm away from where it can go"));
+    CHECK_THAT(outcome.error, Catch::Matchers::ContainsSubstring(" mm out of reach"));
     CHECK_FALSE(std::filesystem::exists(directory.path() / "run.csv"));
 }
 

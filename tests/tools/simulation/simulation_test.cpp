@@ -197,7 +197,7 @@ TEST_CASE("a reference beyond a joint limit and an unstable arm are reported wit
                 unstable.next();
             }
         }(),
-        Catch::Matchers::ContainsSubstring("running away"));
+        Catch::Matchers::ContainsSubstring("found a diverging one"));
 }
 
 } // namespace simulation_test

@@ -56,8 +56,8 @@ void Circle::check_reach() {
         const double miss = (kinematics_.tip(posture) - point(angle)).norm();
         if (!(miss <= tolerance)) {
             throw InputError("task.circle: at " + number_text(std::round(angle * 180 / std::numbers::pi)) +
-                             " degrees: expected a point that the tip reaches, found one " +
-                             number_text(std::round(miss * 1e4) / 10) + " mm away from where it can go (" +
+                             " degrees: expected a point within reach of the tip, found one " +
+                             number_text(std::round(miss * 1e4) / 10) + " mm out of reach (" +
                              kinematics_.joints_at_limits(posture) + ")");
         }
     }

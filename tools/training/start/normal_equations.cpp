@@ -77,8 +77,8 @@ CovarianceFactor information_factor(MatrixXd information, double prior_variance)
     auto factor = CovarianceFactor::of(std::move(information));
     if (!factor) {
         throw InputError(
-            "training: the information matrix of the start state is not positive definite, expected a "
-            "regular one (prior variance " +
+            "training: expected a positive definite information matrix of the start state, found another "
+            "(prior variance " +
             number_text(prior_variance) + ")");
     }
     return *std::move(factor);

@@ -121,11 +121,12 @@ TEST_CASE("a circle out of reach is reported with the place and the distance and
     const Robot robot = icub();
     CircleTask circle = small_circle();
     circle.centre.x() -= 0.5;
-    CHECK_THROWS_WITH(make_task(circle, robot, period_s, 1),
-                      Catch::Matchers::StartsWith(
-                          "task.circle: at 0 degrees: expected a point that the tip reaches, found one ") &&
-                          Catch::Matchers::ContainsSubstring(" mm away from where it can go (") &&
-                          Catch::Matchers::ContainsSubstring("r_elbow at its lower limit 0.2618 rad"));
+    CHECK_THROWS_WITH(
+        make_task(circle, robot, period_s, 1),
+        Catch::Matchers::StartsWith(
+            "task.circle: at 0 degrees: expected a point within reach of the tip, found one ") &&
+            Catch::Matchers::ContainsSubstring(" mm out of reach (") &&
+            Catch::Matchers::ContainsSubstring("r_elbow at its lower limit 0.2618 rad"));
     circle = small_circle();
     circle.radius = 1;
     CHECK_THROWS_AS(make_task(circle, robot, period_s, 1), InputError);

@@ -127,8 +127,8 @@ TEST_CASE("a start with a singular information matrix is rejected with its prior
     problem.rows.resize(features); // for twice as many weights
     CHECK_THROWS_WITH(
         tools::batch_start(problem.model, problem.data, problem.rows),
-        Catch::Matchers::ContainsSubstring("information matrix of the start state is not positive "
-                                           "definite, expected a regular one (prior variance inf"));
+        Catch::Matchers::ContainsSubstring("expected a positive definite information matrix of the start "
+                                           "state, found another (prior variance inf"));
 }
 
 } // namespace start_state_test
