@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Detects a push during the recorded motion, from positions and motor currents. A current that a push would
-// cause is added to that of one joint.
+// Detects a push during the recorded motion, from positions and motor currents. The current of a push is
+// added to the current of one joint.
 #include "instruction_counter.hpp"
 #include "report.hpp"
 #include "ur5_model.hpp" // constants and limits, in flash

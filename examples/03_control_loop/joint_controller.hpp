@@ -134,8 +134,8 @@ class JointController {
     /// Returns the number of ticks since the last new measurement of this joint.
     [[nodiscard]] int ticks_without_sample(int joint) const { return missed_[joint]; }
 
-    /// Call this if the arm has changed or differs from that of the training. Without it the learner rejects
-    /// many samples as outliers and adapts slowly.
+    /// Announces that the arm has changed or is not the arm of the training. Without this call the learner
+    /// rejects many samples as outliers and adapts slowly.
     void relearn() { learned_.relearn(); }
 
     /// Includes or excludes the learned part, without a step in the effort.

@@ -52,7 +52,7 @@ JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, cons
                               int delay_ticks);
 
 /// Returns the loop that a scenario describes: its task, gains and rate of its `controller` (of kind
-/// feed_forward), and filter of its `derivatives`. The torque limit is that of its `actuators` or the
+/// feed_forward), and filter of its `derivatives`. The torque limit is its `actuators`' or the
 /// robot's. The nominal rigid body is `robot` with the scenario's rotors. `learned`: null for nominal
 /// feed-forward only. `delay_ticks`: see LoopConfig. `limits`: replace the defaults. Throws InputError,
 /// naming `source` or the model, for inconsistent inputs.

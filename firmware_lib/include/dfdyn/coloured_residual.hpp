@@ -181,7 +181,7 @@ class ColouredResidual {
         residuals_ = prediction == nullptr ? 0 : std::min(residuals_ + 1, 2);
     }
 
-    /// Returns the autocorrelation of an output's residual at a lag of one sample, in (-1, 1).
+    /// Returns the autocorrelation of a residual at a lag of one sample, in (-1, 1). 0 ≤ output < m.
     [[nodiscard]] constexpr Scalar correlation(int output) const noexcept {
         return lines_[output].residual.correlation();
     }

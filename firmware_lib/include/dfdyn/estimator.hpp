@@ -119,7 +119,7 @@ class Estimator {
     }
 
     /// Restores a snapshot of an estimator of the same model and restarts the window. A rejected snapshot
-    /// changes nothing.
+    /// changes nothing; the result is the reason. O(size of the state).
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         sequence_.begin_change();
         const SnapshotResult result = read_snapshot(*this, model_identity(), buffer);

@@ -59,8 +59,8 @@ class InnovationGate {
         changed_ = false;
     }
 
-    /// Checks one measured sample. Returns the noise variance to learn it with, in units of the output's
-    /// noise variance (≥ 1), or 0 to refuse it.
+    /// Checks one measured sample by its normalised innovation squared, ≥ 0 and not NaN. Returns the noise
+    /// variance to learn it with, in units of the output's noise variance (≥ 1), or 0 to refuse it.
     [[nodiscard]] constexpr Scalar judge(Scalar normalised_innovation_squared) noexcept {
         const Scalar limit = limit_ * level_;
         const Scalar contradiction =

@@ -54,7 +54,7 @@ struct Outcome {
     double moved = 0;        ///< rad, by the push
     double error_at_end = 0; ///< rad, of the reference at the end of the push
     double command = 0;      ///< N·m, in the last 0.1 s of the push, mean
-    double gravity = 0;      ///< N·m, likewise
+    double gravity = 0;      ///< N·m, mean over the same time
     std::uint64_t learned_in_contact = 0;
     int contact_lost = 0; ///< ticks of the push after the reaction without a contact
     std::string summary;

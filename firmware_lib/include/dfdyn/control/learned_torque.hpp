@@ -109,7 +109,7 @@ class LearnedTorque {
         return known;
     }
 
-    /// See `Estimator::relearn`: for an arm that has changed or differs from that of the training.
+    /// See `Estimator::relearn`: for an arm that has changed, or is not the arm of the training.
     void relearn() noexcept { estimator_.relearn(); }
 
     /// Returns to the initial state of the model.

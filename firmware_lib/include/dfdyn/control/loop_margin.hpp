@@ -46,9 +46,9 @@ class LoopMargin {
         return at(bandwidth, high).phase;
     }
 
-    /// Returns the largest bandwidth, rad/s, at most `most`, such that every smaller bandwidth leaves a phase
-    /// margin of at least `margin` rad; 0 if none does. Cost: about 5000 evaluations of L, so call it when
-    /// the program starts.
+    /// Returns the largest bandwidth, rad/s, at most `most` > 0, such that every smaller bandwidth has a
+    /// phase margin of at least `margin` (rad, below π / 2); 0 if none has. Cost: about 5000 evaluations of
+    /// L, so call it when the program starts.
     [[nodiscard]] Scalar largest_bandwidth(Scalar margin, Scalar most) const noexcept {
         Scalar low = 0;
         Scalar high = most * least_share;

@@ -13,8 +13,8 @@ struct Reference {
     Storage<Scalar, n> acceleration; ///< rad/s²
 };
 
-/// Returns the position of joint `joint` after a short time at constant acceleration, rad. The error is jerk
-/// · time³ / 6.
+/// Returns the position, rad, of joint `joint` (from 0) after `time_s` (s) at constant acceleration. The
+/// error is jerk · time³ / 6. O(1).
 template <class Scalar, int n>
 Scalar position_after(const Reference<Scalar, n>& reference, int joint, Scalar time_s) noexcept {
     return reference.position[joint] +

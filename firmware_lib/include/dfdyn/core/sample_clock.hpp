@@ -12,8 +12,8 @@ namespace dfdyn {
 /// Decides from time stamps whether samples were lost between two of them.
 ///
 /// A single step cannot distinguish jitter from a loss: two consecutive stamps that are each half a period
-/// early or late are up to two periods apart. Therefore a phase-locked loop follows the sample grid: the
-/// sender's regular clock, of which the stamps are noisy readings. The loop is a Kalman filter with two
+/// early or late are up to two periods apart. Therefore a phase-locked loop follows the sample grid. The grid
+/// is the sender's regular clock; the stamps are its noisy readings. The loop is a Kalman filter with two
 /// states, phase and period; all quantities are in nominal sample periods. The period may deviate from the
 /// nominal one by one eighth.
 ///

@@ -91,7 +91,7 @@ class SnapshotWriter {
         result_ = why;
     }
 
-    /// Returns true if the state is still that of the first piece. A tick that began before the hold, or
+    /// Returns true if the state has not changed since the first piece. A tick that began before the hold, or
     /// after the hold expired, may still be in progress; `now` is then one more than an even number, and the
     /// decision is deferred.
     bool unchanged(std::uint32_t now) noexcept {

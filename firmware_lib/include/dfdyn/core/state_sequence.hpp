@@ -6,8 +6,8 @@
 
 namespace dfdyn {
 
-/// Lets one context copy a state that another context changes; typically the idle loop copies what is learned
-/// in an interrupt.
+/// Lets one context copy a state that another context changes; typically the idle loop copies the state that
+/// an interrupt learns.
 ///
 /// This is a sequence lock (L. Lamport, "Concurrent reading and writing", 1977). The sequence is odd during a
 /// change and a different even number afterwards, so that a copy during which the state changed is detected
@@ -18,8 +18,8 @@ namespace dfdyn {
 ///
 /// Neither context waits, and no interrupt is masked. Each variable is written by one context only, with
 /// 32-bit loads and stores; no read-modify-write is needed, which a Cortex-M0 lacks. The handshake at the
-/// start of a hold is that of E. W. Dijkstra, "Solution of a problem in concurrent programming control"
-/// (1965): each side sets its flag before it reads the other's, so that at least one side sees the other.
+/// start of a hold is from E. W. Dijkstra, "Solution of a problem in concurrent programming control" (1965):
+/// each side sets its flag before it reads the other's, so that at least one side sees the other.
 ///
 /// A copy of the object starts without a hold.
 class StateSequence {

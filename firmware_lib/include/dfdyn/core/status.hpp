@@ -124,8 +124,8 @@ struct Status {
     }
     /// Returns true if the sample has been learned in this tick.
     [[nodiscard]] constexpr bool learned() const noexcept { return estimated() && learning == Reason::ok; }
-    /// Returns the one reason to report: that of the prediction unless it is ok. A fault of the measurement
-    /// takes precedence over `prediction_bounded`.
+    /// Returns the one reason to report: the prediction's unless it is ok, otherwise learning's. A fault of
+    /// the measurement takes precedence over `prediction_bounded`.
     [[nodiscard]] constexpr Reason reason() const noexcept {
         return predicted() || (estimated() && is_fault(learning)) ? learning : prediction;
     }

@@ -12,7 +12,7 @@
 
 namespace dfdyn {
 
-/// Largest |argument| (rad) for which `cos_sin` has its full accuracy.
+/// Largest |argument| (rad) that `cos_sin` accepts.
 template <class Scalar>
 inline constexpr Scalar largest_cos_sin_argument = 8192;
 
@@ -120,7 +120,7 @@ void cos_sin_lanes(const Scalar* argument, Scalar amplitude, Scalar* cosine, Sca
 /// argument. For double the bound is the sum of the following terms, which the tests verify one by one:
 ///  - two roundings of r = x - k π/2, 1.1e-16 (the products with all parts but the last are exact, and so is
 ///    the first difference);
-///  - the first omitted term of the sine, 0.5e-16 (that of the cosine is negligible);
+///  - the first omitted term of the sine, 0.5e-16 (the cosine's is negligible);
 ///  - the roundings of the last sum and of the products after it, 1.2e-16; the earlier terms of Horner's
 ///    scheme are small.
 template <class Scalar>

@@ -61,8 +61,8 @@ class BlockArrow : public BlockArrowFootprint<Scalar, columns, p, m> {
         fresh_ = false;
     }
 
-    /// Computes the means of the m outputs for φ and the rows ψ (m × p), which become the present columns of
-    /// `variances` and `begin`. O(2d m (1+p)).
+    /// Computes the m means for φ (2d values) and the rows ψ (m × p, row-major), which become the present
+    /// columns of `variances` and `begin`. O(2d m (1+p)).
     void predict(const Scalar* phi, const Scalar* psi, Scalar* means) noexcept {
         const Scalar pending =
             task_ == Task::weights ? detail::dot(factor_.gain(), phi, columns_) / alpha_ : Scalar(0);
@@ -81,8 +81,8 @@ class BlockArrow : public BlockArrowFootprint<Scalar, columns, p, m> {
         fresh_ = true;
     }
 
-    /// Computes the variance of each predicted mean at the present columns, whose features are `phi`. Returns
-    /// the features' part, φ'Pφ. O((2d)² + m p²).
+    /// Computes the m variances of the predicted means at the present columns, whose features are `phi`.
+    /// Returns the features' part, φ'Pφ. O((2d)² + m p²).
     Scalar variances(const Scalar* phi, Scalar* variances) const noexcept {
         common_.variances(present_.rows.data(), variances);
         const Scalar shared = factor_.variance(phi);

@@ -115,12 +115,12 @@ class UdCovariance {
     /// Returns 1 + φ'Pφ / (noise variance) of the last learned row, before it was learned.
     [[nodiscard]] Scalar last_variance_ratio() const noexcept { return ratio_; }
 
-    /// Returns the weights of one output, p values in units of its noise.
+    /// Returns the weights of one output, 0 ≤ output < m: p values in units of its noise.
     [[nodiscard]] const Scalar* weights(int output) const noexcept {
         return weights_.data() + output * padded(columns_);
     }
 
-    /// Returns the variance P_ii of one parameter. Only when idle. O(p).
+    /// Returns the variance P_ii of one parameter, 0 ≤ i < p. Only when idle. O(p).
     [[nodiscard]] Scalar parameter_variance(int i) const noexcept { return factor_.parameter_variance(i); }
 
     [[nodiscard]] const UdFactor<Scalar, p>& factor() const noexcept { return factor_; }

@@ -17,7 +17,7 @@ namespace dfdyn {
 /// zeros stay zeros and ones stay ones. Columns beyond p pad the last panel and have no effect. Memory about
 /// p²/2 + 5 p scalars.
 ///
-/// A sweep can stop after any panel and continue later. Until it is closed, `variance` is exactly that of the
+/// A sweep can stop after any panel and continue later. Until it is closed, `variance` refers exactly to the
 /// old covariance: after j columns the updated part of P is a rank-one downdate of the old one, Σ_{i≤j} ū d̄
 /// ū' = Σ_{i≤j} u d u' - g g'/α, with the partial gain g and α of the sweep.
 template <class Scalar, int p>
@@ -51,7 +51,7 @@ class UdFactor {
         sweep_ = Sweep::none;
     }
 
-    /// Loads an initial factor: U above its diagonal by columns, and D.
+    /// Loads an initial factor: U above its diagonal by columns (p (p-1) / 2 values), and D (p values > 0).
     void load(const Scalar* unit_upper, const Scalar* diagonal) noexcept {
         for (int j = 0; j < columns_; ++j) {
             diagonal_[j] = diagonal[j];
@@ -62,7 +62,7 @@ class UdFactor {
         }
     }
 
-    /// Returns h'Ph of a row h of p values; during a sweep, that of the covariance before it. O(p²).
+    /// Returns h'Ph of a row h of p values; during a sweep, with the covariance before it. O(p²).
     [[nodiscard]] Scalar variance(const Scalar* row) const noexcept {
         Scalar total = 0;
         for (int b = 0; b < panel_count(); ++b) {
@@ -148,14 +148,14 @@ class UdFactor {
         return true;
     }
 
-    /// Computes P *= growth.
+    /// Computes P *= growth, growth > 0. O(p).
     void scale(Scalar growth) noexcept {
         for (int j = 0; j < columns_; ++j) {
             diagonal_[j] *= growth;
         }
     }
 
-    /// Returns the variance P_ii of one parameter. Not during a sweep. O(p).
+    /// Returns the variance P_ii of one parameter, 0 ≤ i < p. Not during a sweep. O(p).
     [[nodiscard]] Scalar parameter_variance(int i) const noexcept {
         Scalar total = diagonal_[i];
         for (int j = i + 1; j < columns_; ++j) {

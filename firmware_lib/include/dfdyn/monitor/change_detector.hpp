@@ -106,7 +106,7 @@ class ChangeDetector {
     /// Returns the kind of the sum that raised the last alarm, and its output; m: all outputs together.
     [[nodiscard]] Departure departure() const noexcept { return kind_of(raised_); }
     [[nodiscard]] int channel() const noexcept { return output_of(raised_); }
-    /// Returns the number of blocks since the onset of the present alarm, including that of the onset.
+    /// Returns the number of blocks since the onset of the present alarm, including the onset's block.
     [[nodiscard]] int blocks_since_onset() const noexcept { return since_onset_; }
 
     /// Resets the sums and the alarm. The learned noise and thresholds remain.

@@ -37,8 +37,8 @@ namespace dfdyn {
 ///
 /// Do not use `Estimate::innovation`: it is 0 for an output beyond the model's limit, as in the hardest
 /// collisions. After an interruption during a contact, the push that remains becomes the baseline. Positions,
-/// errors and predictions have `joints` values in the same order. No heap. Cost: `cost` per joint and tick,
-/// and four exponentials. Memory: 18 numbers per joint.
+/// errors and predictions have `joints` values in the same order; joints count from 0. No heap. Cost: `cost`
+/// per joint and tick, and four exponentials. Memory: 18 numbers per joint.
 template <class Scalar, int joints>
 class ContactDetector {
   public:
@@ -147,7 +147,7 @@ class ContactDetector {
         running_ = true;
     }
 
-    /// Updates the motion and the factor by which it exceeds that of the training.
+    /// Updates the motion and the factor by which it exceeds the training's.
     void follow_range(const Scalar* position, const Steps& steps) noexcept {
         Scalar range = 1;
         for (int k = 0; k < count_; ++k) {

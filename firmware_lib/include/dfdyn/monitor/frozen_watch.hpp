@@ -38,7 +38,7 @@ class FrozenWatch {
 
     void restart() noexcept { samples_ = 0; }
 
-    /// Adds the readings of one sample: `joints` positions, and the other channels.
+    /// Adds the readings of one sample: `joints` positions, and `count` - `joints` other channels.
     void add(const Scalar* positions, const Scalar* others) noexcept {
         int moving = 0;
         bool changed = false;

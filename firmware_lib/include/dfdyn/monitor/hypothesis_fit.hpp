@@ -25,7 +25,7 @@ class Evidence {
         }
     }
 
-    /// Adds an error of output k, and its variance relative to that of the noise.
+    /// Adds an error of output k, 0 ≤ k < m, and its variance > 0, both relative to the noise.
     void add(int k, Scalar error, Scalar variance) noexcept {
         using std::log;
         squares_[k] += error * error / variance;

@@ -90,8 +90,8 @@ class JointDeviation {
         motion_ = JointMotion::standing;
     }
 
-    /// Updates the motion from a position (rad). Returns speed or acceleration relative to the largest usual
-    /// one, whichever is larger.
+    /// Updates the motion from a position (rad). Returns the larger of speed and acceleration, each relative
+    /// to its largest usual value.
     Scalar follow_motion(Scalar position, const ContactLimits<Scalar>& limits, const Steps& steps) noexcept {
         velocity_ += steps.velocity * ((position - position_) / steps.dt - velocity_);
         position_ = position;

@@ -42,7 +42,7 @@ class Monitor {
     using Constants = MonitorConstants<Scalar, Arm, M>; ///< geometry, time scales, false-alarm rate
 
     static constexpr int catch_up = 3; ///< stored blocks that the bank adds per new block
-    /// Smallest usual scale of a block's innovation, as a share of that of white innovations with the
+    /// Smallest usual scale of a block's innovation, relative to the scale of white innovations with the
     /// predicted deviation. A deviation that the estimator overestimates, as after a standstill, is then not
     /// taken as evidence.
     static constexpr Scalar least_scale = Scalar(0.25);

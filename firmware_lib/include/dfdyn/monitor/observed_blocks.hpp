@@ -124,7 +124,7 @@ class ObservedBlocks {
     [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
     /// Returns how many blocks up to the newest follow each other without a gap, at most `history`.
     [[nodiscard]] int unbroken() const noexcept { return unbroken_; }
-    /// Returns the m means of a block among the last `history`.
+    /// Returns the m means of a block among the last `history`: newest() - history < number ≤ newest().
     [[nodiscard]] const Block* block(std::int64_t number) const noexcept {
         return past_.data() + slot(number) * outputs();
     }

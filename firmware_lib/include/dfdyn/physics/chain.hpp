@@ -15,8 +15,8 @@ struct Placement {
     Scalar translation[3]; ///< m
 };
 
-/// A joint of a serial chain. Its frame is also that of the link it moves: from the pose `placement`, the
-/// link rotates about `axis` (revolute) or slides along it (prismatic).
+/// A joint of a serial chain. Its frame is also the frame of the link that it moves: from the pose
+/// `placement`, the link rotates about `axis` (revolute) or slides along it (prismatic).
 template <class Scalar>
 struct ChainJoint {
     /// Pose of the link's frame in the previous link's frame, at joint position 0.

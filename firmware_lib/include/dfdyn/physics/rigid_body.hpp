@@ -69,7 +69,7 @@ LinkMotion<Scalar> link_motion(const LinkMotion<Scalar>& previous, const LinkFra
 
 /// Traverses the chain and calls visit(body, motion, screws, count) for every body, base to tip. `screws`
 /// contains those of the first `count` outputs, in the body's frame; the body does not contribute to the
-/// other outputs. `xi` is (q, q̇, q̈) of each joint: element j of joint i at 3i + j; rad, m, s.
+/// other outputs. `xi` is (q, q̇, q̈) of each joint: element j of joint i at 3i + j; rad, m, s. O(n m).
 template <class Arm, class Real, class Scalar, class Visit>
 void for_each_body(const typename Arm::template Constants<Real>& chain, const typename Arm::Sizes& sizes,
                    const Scalar* xi, Visit visit) noexcept {
@@ -92,9 +92,9 @@ void for_each_body(const typename Arm::template Constants<Real>& chain, const ty
     }
 }
 
-/// Writes the ten derivatives of a screw's output with respect to a body's inertial parameters: screw ·
-/// wrench. The wrench of the body about its frame's origin is force = m a + A (mc), torque = (mc) × a + I α +
-/// ω × I ω, with A = [α]× + [ω]×[ω]×.
+/// Writes the ten derivatives (`row`) of a screw's output with respect to a body's inertial parameters: screw
+/// · wrench. The wrench of the body about its frame's origin is force = m a + A (mc), torque = (mc) × a + I α
+/// + ω × I ω, with A = [α]× + [ω]×[ω]×.
 template <class Scalar>
 void inertial_row(const Screw<Scalar>& screw, const LinkMotion<Scalar>& motion, Scalar* row) noexcept {
     const auto& [w, alpha, a] = motion;
