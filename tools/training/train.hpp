@@ -108,10 +108,10 @@ struct TrainedPhysics {
     /// 1/s^2. Empty: the recording's derivatives (STD).
     Eigen::MatrixXd motion_rows;
     std::vector<Eigen::Index> columns; ///< p chosen columns of the regressor, ascending
-    /// p, by the form of the prior. "unit": 1. "diagonal": the square roots of D. "scaled": so that psi~ has
-    /// order 1, 1 / (root mean square of the column over the likelihood rows, each output's rows divided by
-    /// its standard deviation), times the geometric mean of noise_std / (standard deviation of the output).
-    /// At most PhysicsOptions::parameter_size / gamma, so that no parameter's prior standard deviation
+    /// p, by the form of the prior. "unit": 1. "diagonal": the square roots of D. "scaled": g / r, so that
+    /// psi~ has order 1. With the standard deviation s_k of output k, r is the root mean square of the column
+    /// over the likelihood rows, those of output k divided by s_k, and g the geometric mean of noise_std_k /
+    /// s_k. At most PhysicsOptions::parameter_size / gamma, so that no parameter's prior standard deviation
     /// exceeds its plausible size.
     Eigen::VectorXd column_scale;
     double prior_variance = 0; ///< gamma^2 in these units; 0 for SP and SP2, whose pi is fixed
@@ -142,9 +142,9 @@ struct TrainingResult {
 /// number of threads. The caller sets `training.recordings` and `training.rows`. `training.all_starts`
 /// contains the starts that did not fail, in order.
 ///
-/// Throws InputError for options out of range, for data rejected by check_training_data(), for fewer than 20
-/// usable rows in motion, for a constant output, for physics that the recording does not excite, or if every
-/// start fails. Cost: starts * evaluations * O(likelihood_rows^3), then O(T (2d)^2 + (2d)^3).
+/// Throws InputError for options out of range and for data rejected by check_training_data(); for fewer than
+/// 20 usable rows in motion and for a constant output; for physics that the recording does not excite; and if
+/// every start fails. Cost: starts * evaluations * O(likelihood_rows^3), then O(T (2d)^2 + (2d)^3).
 TrainingResult train(const TrainingData& data, const TrainingOptions& options,
                      const ProgressCallback& progress = {});
 

@@ -131,8 +131,8 @@ class ForecastCombination {
     }
 
     /// Updates the mean square errors with the members' `predictions` of a sample (a table) and its m
-    /// `measured` outputs, and the mean variances with the deviations of the last `weigh`. `ahead`: table of
-    /// predictions of the same sample with older weights; may be `predictions`. A NaN error counts as the
+    /// `measured` outputs. Updates the mean variances with the deviations of the last `weigh`. `ahead`: table
+    /// of predictions of the same sample with older weights; may be `predictions`. A NaN error counts as the
     /// largest possible one. Then computes the weights from the errors alone.
     constexpr void learn(const Scalar* predictions, const Scalar* ahead, const Scalar* measured) noexcept {
         for (int i = 0; i < count() && trust_ < 1; ++i) { // the past errors have lost influence

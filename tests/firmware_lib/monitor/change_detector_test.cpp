@@ -22,8 +22,8 @@ struct Extra {
 };
 
 /// Block means of the innovations of an arm whose joints rest and move in turn. They are larger and slower at
-/// rest, with a first-order autocorrelation from block to block, and have normal tails or those of Student's
-/// t with four degrees of freedom.
+/// rest, with a first-order autocorrelation from block to block. Their tails are normal, or those of
+/// Student's t with four degrees of freedom.
 template <class Scalar>
 class Innovations {
   public:

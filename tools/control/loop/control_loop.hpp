@@ -66,12 +66,12 @@ struct LoopCounters {
 /// for a few ticks only and does not change the loop's gain and phase while ticks are regular.
 ///
 /// A contact (LoopConfig::on_contact) stops the motion on its path (PausableTask); the loop never resumes it
-/// by itself. The command changes, by at most a torque limit per `stop_time_s`, to the gravity torque of the
-/// nominal body at the measured position, plus the compensated offsets. `hold` adds the torque of the gains
-/// about the stopped reference. `yield` adds nothing during the contact, and the torque of the velocity gain
-/// after it. Observer, learned torque and friction add nothing. `calm_s` after the end of the contact the
-/// reference moves to the measured position. The arm holds there until the next contact. While it yields
-/// there is no following error.
+/// by itself. The command changes by at most a torque limit per `stop_time_s`. Its new value is the gravity
+/// torque of the nominal body at the measured position, plus the compensated offsets. `hold` adds the torque
+/// of the gains about the stopped reference. `yield` adds nothing during the contact, and the torque of the
+/// velocity gain after it. Observer, learned torque and friction add nothing. `calm_s` after the end of the
+/// contact the reference moves to the measured position. The arm holds there until the next contact. While it
+/// yields there is no following error.
 ///
 /// Stopping: every joint receives a reference that brakes from its present position and velocity to rest
 /// within `stop_time_s`. The command changes, by at most a torque limit per `stop_time_s`, to the sum of

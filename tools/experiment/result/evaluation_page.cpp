@@ -141,11 +141,12 @@ class EvaluationPage {
     static std::string rule_sentence() {
         return "A comparison pairs the draws of two cases and averages over the subsets: the mean of ε in "
                "the transient, its median in the steady state. It holds if the exact one-sided signed-rank "
-               "test over the draws gives p < 0.05 and most subsets agree; it is contradicted if the test "
-               "says the opposite with p < 0.05; else it is undecided, as it always is with fewer than five "
-               "draws. A finding is reproduced if all its comparisons hold, partly if more hold than are "
-               "contradicted, undecided if none holds and none is contradicted, and not reproduced "
-               "otherwise.";
+               "test over the draws gives p < 0.05 and most subsets agree. It is contradicted if the test of "
+               "the opposite gives p < 0.05; otherwise it is undecided, as always with fewer than five "
+               "draws. "
+               "A finding is reproduced if all its comparisons hold, and partly reproduced if more hold than "
+               "are contradicted. It is undecided if none holds and none is contradicted; otherwise it is "
+               "not reproduced.";
     }
 
     std::vector<ReportTable> tables() const {

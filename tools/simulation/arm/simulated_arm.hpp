@@ -24,11 +24,11 @@ struct ActuatorModel {
 
 /// An arm with actuators and friction, integrated in fixed steps.
 ///
-/// One step is a Strang splitting. Half a step of the bristles at constant joint velocity is followed by a
-/// whole step of the rigid body (classical fourth-order Runge-Kutta, bristles held) and another half step of
-/// the bristles. Its order is 4 without bristles and 2 with them. The bristles' part is exact, so only the
-/// oscillation of a link on its bristles limits the step: step · sqrt(σ0 / inertia) and σ1 / inertia · step
-/// must be below 2.
+/// One step is a Strang splitting: half a step of the bristles, a whole step of the rigid body, and another
+/// half step of the bristles. The bristles move at constant joint velocity; the rigid body uses classical
+/// fourth-order Runge-Kutta with held bristles. The order is 4 without bristles and 2 with them. The
+/// bristles' part is exact, so only the oscillation of a link on its bristles limits the step: step · sqrt(σ0
+/// / inertia) and σ1 / inertia · step must be below 2.
 ///
 /// A soft joint is represented by two joints about one axis: the rotor turns relative to the previous link,
 /// and the link turns relative to the rotor, driven by the gear. The rotor is a separate body that the

@@ -31,9 +31,9 @@ inline constexpr int inertial_parameters = 10;
 
 /// The outputs of a chain are the generalised forces of its joints (N·m, N); every link contributes.
 ///
-/// A kind of outputs defines a unique `identity`, the number of outputs, the number of bodies that contribute
-/// (the last `bodies` links), and the link at which each output's screw begins. The screw is the motion whose
-/// virtual power is that output.
+/// A kind of outputs defines a unique `identity`, the number of outputs, and the number of bodies that
+/// contribute (the last `bodies` links). `begin` defines the link at which each output's screw begins. The
+/// screw is the motion whose virtual power is that output.
 struct JointTorques {
     static constexpr int identity = 1; ///< unique among the kinds of outputs
     /// Returns the number of outputs of an arm with `joints` joints.
