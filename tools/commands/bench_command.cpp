@@ -47,7 +47,7 @@ int run(const BenchCommandOptions& options) {
         bench.replay_rows = options.quick ? 2000 : rows_of_an_hour;
     }
     if (!is_optimised()) {
-        std::cerr << "dfdyn bench: this program was built without optimisation: its times mean nothing\n";
+        std::cerr << "dfdyn bench: this program was built without optimisation: its times are meaningless\n";
     }
     if (!options.folder.empty()) {
         check_folder(options.folder);
@@ -70,33 +70,34 @@ int run(const BenchCommandOptions& options) {
 void add_bench_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<BenchCommandOptions>();
     CLI::App* command = app.add_subcommand(
-        "bench", "Times a tick on this machine, against other learners and against what the machine can do");
+        "bench",
+        "Measures the time of a tick; compares it with other learners and with the limits of this machine");
     command
         ->add_option("-o,--output", options->folder,
                      "Folder for bench.json, bench.md and pictures/tick-time.svg")
         ->type_name("DIR");
     command
         ->add_option("--passes", options->bench.repetitions.passes,
-                     "Repetitions of each learner, all in turn; more on a busy machine")
+                     "Repetitions of each learner, in turn with the others; use more on a busy machine")
         ->check(whole_number_in(1, 100'000))
         ->capture_default_str();
     command
         ->add_option("--stretch", options->bench.stretch_ticks,
-                     "Ticks of a tenth of the long run; an hour at 1 kHz is 3600000")
+                     "Ticks in each tenth of the long run; 3600000 are an hour at 1 kHz")
         ->check(whole_number_in(1, 100'000'000))
         ->capture_default_str();
-    command->add_flag(
-        "--hour", options->hour,
-        "Also replay a generated recording of one hour at 1 kHz (1 GB of memory, and for a while 0.9 "
-        "GB of temporary files)");
+    command->add_flag("--hour", options->hour,
+                      "Also replay a generated recording of one hour at 1 kHz (needs 1 GB of memory and 0.9 "
+                      "GB for temporary files)");
     command
         ->add_option("--loop", options->bench.loop_s,
-                     "Also tick once per millisecond for this many seconds beside a load on another core")
+                     "Also tick once per millisecond for this many seconds, with a load on another core")
         ->check(number_in(1.0, 3600.0));
-    command->add_flag("--quick", options->quick, "Few and small: shows that it runs, not how fast it is");
+    command->add_flag("--quick", options->quick,
+                      "Few and short measurements: a functional test without meaningful times");
     add_json_option(*command, options->json);
     command->footer("Example:\n  dfdyn bench --output bench --hour\n"
-                    "Learners whose predictions are wrong are named, without a time.\n"
+                    "Learners with wrong predictions are listed without a time.\n"
                     "Exit status: 0 done, whether or not targets are met, 1 dfdyn's own predictions are "
                     "wrong, 2 bad usage.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

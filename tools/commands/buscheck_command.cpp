@@ -131,24 +131,28 @@ int run(const BusCheckOptions& options) {
 void add_buscheck_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<BusCheckOptions>();
     CLI::App* command = app.add_subcommand(
-        "buscheck", "Looks at a CAN bus, or a log of one: who sends, how steadily, what is wrong");
+        "buscheck", "Checks a CAN bus, or a log of one: senders, their rates and jitter, faults");
     command
-        ->add_option(
-            "--bus", options->bus,
-            "What should be there: docs/reference/can.md. Without: recognises families, motors and rates")
+        ->add_option("--bus", options->bus,
+                     "Expected devices: docs/reference/can.md. Without --bus, families, motors and rates are "
+                     "recognised")
         ->type_name("B.json");
-    command->add_option("-o,--output", options->draft, "Without --bus: writes a draft of it")
+    command->add_option("-o,--output", options->draft, "Without --bus: writes a draft of the bus description")
         ->type_name("B.json");
-    command->add_option("--can", options->interface, "Look there; nothing is sent")->type_name("IFACE");
-    command->add_option("--log", options->log, "Or into a log of candump -L")->type_name("L.log");
-    command->add_option("--from", options->log_interface, "The interface in the log, where there are several")
+    command->add_option("--can", options->interface, "Interface to check; nothing is sent")
         ->type_name("IFACE");
-    command->add_option("--duration", options->duration_s, "With --can: for how long; Ctrl-C ends it before")
+    command->add_option("--log", options->log, "Log to check, in the format of candump -L")
+        ->type_name("L.log");
+    command->add_option("--from", options->log_interface, "Interface in the log, if it contains several")
+        ->type_name("IFACE");
+    command
+        ->add_option("--duration", options->duration_s,
+                     "With --can: seconds to check; Ctrl-C ends the check earlier")
         ->check(number_in(0.1, 1e6))
         ->capture_default_str()
         ->type_name("S");
     command->add_flag("--devices", options->devices,
-                      "Prints what devices there are: docs/reference/devices.md");
+                      "Prints the devices of all families as docs/reference/devices.md");
     add_json_option(*command, options->json);
     command->footer("Example:\n  dfdyn buscheck --can can0 --bus bus.json --duration 5\n"
                     "  dfdyn buscheck --log run.log -o bus.json\n"

@@ -50,16 +50,16 @@ void add_convert_command(CLI::App& app, Command& chosen) {
     command->add_option("--bus", options->bus, "The devices: docs/reference/can.md")
         ->required()
         ->type_name("B.json");
-    command->add_option("-o,--output", options->log, "As of candump -L, with nanoseconds")
+    command->add_option("-o,--output", options->log, "Log in the format of candump -L, with nanoseconds")
         ->required()
         ->type_name("L.log");
     command
         ->add_option("--jitter-us", options->traffic.jitter_us,
-                     "How late frames are at most, evenly distributed")
+                     "Largest delay of a frame; delays are uniformly distributed")
         ->check(number_in(0.0, 1e6))
         ->type_name("US")
         ->capture_default_str();
-    command->add_option("--seed", options->traffic.seed, "Of the jitter")
+    command->add_option("--seed", options->traffic.seed, "Seed of the jitter")
         ->check(seed_number())
         ->type_name("N")
         ->capture_default_str();

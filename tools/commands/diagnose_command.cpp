@@ -227,7 +227,7 @@ void add_result_options(CLI::App& command, DiagnoseOptions& options) {
 void add_diagnose_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<DiagnoseOptions>();
     CLI::App* command = app.add_subcommand(
-        "diagnose", "Shows what a robot's simulation gets wrong, names the causes, extends the model");
+        "diagnose", "Measures the errors of a robot's simulation, names their causes, extends the model");
     options->robot.add_to(*command, true);
     options->recordings.add_to(*command);
     command
@@ -237,20 +237,19 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         ->type_name("tau|i|wrench");
     command
         ->add_option("--torque-constants", options->torque_constants,
-                     "N m/A at each joint, for --outputs i; else each joint has an unknown factor")
+                     "N m/A at each joint, for --outputs i; default: each joint's factor is estimated")
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("K1,K2...");
     command
-        ->add_option(
-            "--changed", options->changed,
-            "What differs between several recordings: the load at the tip, which gets a value in each "
-            "that has one")
+        ->add_option("--changed", options->changed,
+                     "What differs between several recordings: the load at the tip, which is estimated for "
+                     "each recording")
         ->check(one_of({effects::payload().name}))
         ->type_name(effects::payload().name);
     add_result_options(*command, *options);
     command->add_flag("--no-held-out", options->quick,
-                      "Leave out the error on held-out time, which takes half of the run");
+                      "Omit the error on held-out time, which takes half of the run time");
     command->add_flag("--no-setup-check", options->no_setup_check,
                       "Go on although units, clock, columns or signs of a recording look wrong");
     add_json_option(*command, options->json);
@@ -260,8 +259,8 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         "--outputs tau -o load\n"
         "  dfdyn replay --model diagnosis/extended_model.json --log other.csv\n"
         "Exit status: 0 the report is written, whether or not it names a cause; 1 refused: the set-up is "
-        "wrong "
-        "or the recording cannot answer (the report says why, and there is no model); 2 bad usage or input.");
+        "wrong or the recording is unsuitable (the report states the reason; no model is written); 2 bad "
+        "usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

@@ -56,7 +56,7 @@ void add_evaluate_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<EvaluateOptions>();
     CLI::App* command = app.add_subcommand(
         "evaluate", "Runs the paper's experiment over a plan's cases; writes tables, curves and box plots");
-    command->add_option("--plan", options->plan, "What to run: see docs/guide/evaluation.md")
+    command->add_option("--plan", options->plan, "Cases, data and comparisons: see docs/guide/evaluation.md")
         ->required()
         ->type_name("P.json");
     command
@@ -64,18 +64,19 @@ void add_evaluate_command(CLI::App& app, Command& chosen) {
                      "Folder for report.html, results.csv, tables.md, findings.md, pictures/ and cases/")
         ->required()
         ->type_name("DIR");
-    command->add_option("--jobs", options->run.jobs, "Cases x draws at a time")
+    command->add_option("--jobs", options->run.jobs, "Cases x draws in parallel")
         ->check(whole_number_in(1, 256))
         ->capture_default_str();
-    command->add_flag("--fresh", options->run.fresh, "Do again what an earlier run has left in DIR");
+    command->add_flag("--fresh", options->run.fresh,
+                      "Repeat all cases x draws, even if DIR has results of an earlier run");
     command->add_flag("--quick", options->quick,
-                      "One draw, few features and rows: shows that every case runs, not how good it is. Give "
-                      "it a DIR of its own");
+                      "One draw, few features and rows: a functional test of every case without meaningful "
+                      "accuracy. Use a separate DIR");
     add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn evaluate --plan plan.json -o evaluation --jobs 2\n"
-        "A run that was ended goes on where it was: cases x draws whose inputs did not change are not done "
-        "again.\nExit status: 0 done, 1 some cases could not be done (the report names them), 2 bad usage or "
+        "An interrupted run can be continued: cases x draws with unchanged inputs are not repeated.\nExit "
+        "status: 0 done, 1 some cases failed (the report names them), 2 bad usage or "
         "input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

@@ -44,8 +44,8 @@ void add_footprint_command(CLI::App& app, Command& chosen) {
     add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn footprint --model model.json --target cortex-m7 --flash 512K --ram 256K\n"
-        "A model of train --flash, --ram or --tick-operations also shows which smaller model would lose how "
-        "much accuracy.\n"
+        "A model of train --flash, --ram or --tick-operations also shows how much accuracy smaller models "
+        "would lose.\n"
         "Exit status: 0 done, 1 beyond the given budget, 2 bad usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

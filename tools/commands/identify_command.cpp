@@ -119,13 +119,12 @@ int run(const IdentifyOptions& options) {
 
 void add_window_options(CLI::App& command, ZeroPhaseWindow& window) {
     command
-        .add_option(
-            "--half-width", window.half_width,
-            "Samples before and after each one that its derivatives are taken from, where the recording "
-            "has no qd, qdd")
+        .add_option("--half-width", window.half_width,
+                    "Samples before and after each one from which its derivatives are computed, if the "
+                    "recording has no qd, qdd")
         ->check(whole_number_in(1, 1000))
         ->capture_default_str();
-    command.add_option("--degree", window.degree, "Degree of the polynomial that they are taken of")
+    command.add_option("--degree", window.degree, "Degree of the polynomial of these derivatives")
         ->check(whole_number_in(2, 8))
         ->capture_default_str();
 }
@@ -134,9 +133,9 @@ void add_window_options(CLI::App& command, ZeroPhaseWindow& window) {
 
 void add_identify_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<IdentifyOptions>();
-    CLI::App* command =
-        app.add_subcommand("identify", "Fits a robot's inertial parameters to recordings, and says which of "
-                                       "them the recordings determine");
+    CLI::App* command = app.add_subcommand(
+        "identify",
+        "Fits a robot's inertial parameters to recordings; reports which of them the recordings determine");
     options->robot.add_to(*command, true);
     options->recordings.add_to(*command);
     command->add_option("--outputs", options->outputs, "What was measured: tau (torques), wrench")
@@ -144,7 +143,7 @@ void add_identify_command(CLI::App& app, Command& chosen) {
         ->check(one_of({"tau", "wrench"}))
         ->type_name("tau|wrench");
     command->add_flag("--consistent", options->consistent,
-                      "Also parameters of bodies that can be: positive masses, inertias of real bodies");
+                      "Also physically consistent parameters: positive masses, inertias of real bodies");
     add_window_options(*command, options->window);
     options->setup.add_to(*command);
     command->add_option("-o,--output", options->parameters, "The parameters")->type_name("P.json");

@@ -15,15 +15,18 @@ namespace {
 
 /// Adds the options of the learned model and its initial state.
 void add_model(CLI::App& command, LoopOptions& options) {
-    command.add_option("--model", options.model, "Of the joints' torques; none: the rigid body alone")
+    command
+        .add_option("--model", options.model,
+                    "Learned model of the joints' torques; default: the rigid body alone")
         ->type_name("M.json");
-    command.add_flag("--from-prior", options.from_prior, "The model begins with nothing learned");
+    command.add_flag("--from-prior", options.from_prior,
+                     "Start with nothing learned: keep the hyperparameters, drop the trained start");
     command
         .add_option("--restore", options.restored,
-                    "Goes on from what an earlier run of the model had learned, as --save wrote it")
+                    "Continues from the learned state that --save wrote in an earlier run of the model")
         ->excludes("--from-prior")
         ->type_name("FILE");
-    command.add_option("--save", options.saved, "Writes what has been learned at the end")->type_name("FILE");
+    command.add_option("--save", options.saved, "Writes the learned state at the end")->type_name("FILE");
     command
         .add_option("--on-finding", options.on_finding,
                     "What to do when the learner's monitor names a change, as CAUSE=ACTION,...: report (the "
@@ -44,33 +47,30 @@ void add_model(CLI::App& command, LoopOptions& options) {
 /// Adds the options of the loop's limits.
 void add_limits(CLI::App& command, LoopLimits& limits) {
     command
-        .add_option(
-            "--following-error", limits.following_error,
-            "Largest distance from the reference, rad (m); one value, or one per joint. None: that of "
-            "0.8 of the torque limit by the position gain")
+        .add_option("--following-error", limits.following_error,
+                    "Largest distance from the reference, rad (m); one value, or one per joint. Default: 0.8 "
+                    "of the torque limit, divided by the position gain")
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("E");
     command
         .add_option("--speed-limit", limits.speed,
-                    "Largest speed, rad/s (m/s); one value, or one per joint. None: the robot's")
+                    "Largest speed, rad/s (m/s); one value, or one per joint. Default: the robot's limit")
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("V");
     command
-        .add_option(
-            "--observer-bandwidth", limits.observer_bandwidth,
-            "Of the disturbance observer, rad/s; one value, or one per joint; 0: no observer. None: as "
-            "docs/guide/loop.md says, at most 40")
+        .add_option("--observer-bandwidth", limits.observer_bandwidth,
+                    "Bandwidth of the disturbance observer, rad/s; one value, or one per joint; 0: no "
+                    "observer. Default: from docs/guide/loop.md, at most 40")
         ->delimiter(',')
         ->check(number_from_zero())
         ->type_name("B");
     command
-        .add_option(
-            "--learned-limit", limits.learned_limit,
-            "What is learned (the model's forecast and, for SPK, a second one of its physics alone with a "
-            "memory of 0.53 s) adds at most this share of the torque limit to the rigid body's torque; one "
-            "value, or one per joint; 0: it is learned, not used. None: 0.5")
+        .add_option("--learned-limit", limits.learned_limit,
+                    "Largest learned torque that is added to the rigid body's, as a share of the torque "
+                    "limit; one value, or one per joint. Learned are the model and, for SPK, a second one of "
+                    "its physics alone with a memory of 0.53 s. 0: learned, but not used. Default: 0.5")
         ->delimiter(',')
         ->check(number_in(0.0, 1.0))
         ->type_name("F");
@@ -81,7 +81,8 @@ void add_stop(CLI::App& command, StopMode& stop) {
         .add_option_function<std::string>(
             "--stop",
             [&stop](const std::string& mode) { stop = mode == "limp" ? StopMode::limp : StopMode::hold; },
-            "After a stop: hold the arm until told to end, or go limp 0.2 s after the brakes were "
+            "After a stop: hold the arm until Ctrl-C or the end of --duration, or go limp 0.2 s after the "
+            "brakes were "
             "requested")
         ->check(one_of({"hold", "limp"}))
         ->default_str("hold")
@@ -92,7 +93,7 @@ void add_stop(CLI::App& command, StopMode& stop) {
 void add_arm(CLI::App& command, LoopOptions& options) {
     command.add_option("--bus", options.bus, "Devices on the bus: docs/reference/can.md")
         ->type_name("bus.json");
-    command.add_option("--can", options.interface, "The arm is here")->type_name("IFACE");
+    command.add_option("--can", options.interface, "Interface of the arm's bus")->type_name("IFACE");
     command.add_flag("--simulate", options.simulate, "The arm is simulated, in simulated time");
 }
 
@@ -100,8 +101,8 @@ std::string examples_and_status() {
     return "Examples:\n"
            "  dfdyn loop --simulate --robot arm.urdf --scenario s.json --model m.json --duration 90 -o out\n"
            "  dfdyn loop --robot arm.urdf --scenario s.json --model m.json --bus bus.json --can can0\n"
-           "With --can the signal SIGUSR1 takes what is learned out of the torque, and back in, without a "
-           "step.\n"
+           "With --can the signal SIGUSR1 removes the learned part from the torque, or adds it again, "
+           "without a step.\n"
            "Kinds of faults of a scenario: " +
            fault_kind_names("and") +
            ".\n"
@@ -113,10 +114,9 @@ std::string examples_and_status() {
 void add_loop_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<LoopOptions>();
     CLI::App* command = app.add_subcommand(
-        "loop", "Moves an arm: feedback, and feed-forward of a rigid body or a model that learns on");
-    command->add_option("--robot", options->robot, "The arm, as its file knows it")
-        ->required()
-        ->type_name("R.urdf");
+        "loop",
+        "Moves an arm: feedback, and feed-forward of a rigid body or of a model that continues to learn");
+    command->add_option("--robot", options->robot, "Description of the arm")->required()->type_name("R.urdf");
     command
         ->add_option("--scenario", options->scenario,
                      "Task, gains, limits; for --simulate also friction, payloads, sensors, faults: "
@@ -125,10 +125,12 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         ->type_name("S.json");
     add_model(*command, *options);
     add_arm(*command, *options);
-    command->add_option("--duration", options->duration_s, "Seconds; with --can none: until Ctrl-C")
+    command->add_option("--duration", options->duration_s, "Seconds; default with --can: until Ctrl-C")
         ->check(positive_number())
         ->type_name("S");
-    command->add_option("--window", options->window_s, "Of the tracking table, seconds")
+    command
+        ->add_option("--window", options->window_s,
+                     "Time that each row of the tracking table covers, seconds")
         ->check(positive_number())
         ->capture_default_str()
         ->type_name("S");

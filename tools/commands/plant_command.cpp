@@ -41,18 +41,18 @@ int run(const PlantOptions& options) {
 void add_plant_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<PlantOptions>();
     CLI::App* command =
-        app.add_subcommand("plant", "A simulated arm on a CAN bus: sends its sensors, takes torques");
+        app.add_subcommand("plant", "Simulates an arm on a CAN bus: sends sensor readings, receives torques");
     command->add_option("--robot", options->robot, "The arm")->required()->type_name("R.urdf");
     command
         ->add_option("--scenario", options->scenario,
-                     "Friction, payloads, sensors, faults, and where it stands: docs/reference/scenario.md")
+                     "Friction, payloads, sensors, faults and start position: docs/reference/scenario.md")
         ->required()
         ->type_name("S.json");
-    command->add_option("--bus", options->bus, "Its devices: docs/reference/can.md")
+    command->add_option("--bus", options->bus, "The devices: docs/reference/can.md")
         ->required()
         ->type_name("bus.json");
-    command->add_option("--can", options->interface, "Where")->required()->type_name("IFACE");
-    command->add_option("--duration", options->duration_s, "Seconds; none: until Ctrl-C")
+    command->add_option("--can", options->interface, "Interface of the bus")->required()->type_name("IFACE");
+    command->add_option("--duration", options->duration_s, "Seconds; default: until Ctrl-C")
         ->check(positive_number())
         ->type_name("S");
     command->footer("Example:\n  dfdyn plant --robot arm.urdf --scenario s.json --bus bus.json --can vcan0\n"

@@ -24,7 +24,7 @@ void print(const PlayOutcome& outcome) {
         std::cout << outcome.error_frames << " error frames left out: only a controller can send them\n";
     }
     if (outcome.backward_stamps > 0) {
-        std::cout << outcome.backward_stamps << " stamps ran backward: those frames went at once\n";
+        std::cout << outcome.backward_stamps << " stamps ran backward: those frames were sent immediately\n";
     }
     if (outcome.stopped) {
         std::cout << "stopped before the end of the log\n";
@@ -57,17 +57,19 @@ int run(const PlayCommandOptions& options) {
 
 void add_play_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<PlayCommandOptions>();
-    CLI::App* command =
-        app.add_subcommand("play", "Puts a recorded candump log on a CAN interface with its own timing");
-    command->add_option("--log", options->play.log, "The recording, as of candump -L")
+    CLI::App* command = app.add_subcommand(
+        "play", "Sends a recorded candump log on a CAN interface with its original timing");
+    command->add_option("--log", options->play.log, "The recording, in the format of candump -L")
         ->required()
         ->type_name("L.log");
-    command->add_option("--can", options->play.interface, "Where to")->required()->type_name("IFACE");
+    command->add_option("--can", options->play.interface, "Interface to send on")
+        ->required()
+        ->type_name("IFACE");
     command
         ->add_option("--from", options->play.log_interface,
-                     "The interface in the log whose frames to play, where there are several")
+                     "Interface in the log whose frames are sent, if it contains several")
         ->type_name("IFACE");
-    command->add_option("--rate", options->play.rate, "Times the log's own speed")
+    command->add_option("--rate", options->play.rate, "Speed, as a multiple of the log's own")
         ->type_name("X")
         ->check(number_in(0.001, 1000.0))
         ->capture_default_str();

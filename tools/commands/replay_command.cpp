@@ -18,11 +18,11 @@ void add_bus_options(CLI::App& command, ReplayOptions& options) {
         ->type_name("B.json");
     command
         .add_option("--from", options.log_interface,
-                    "The interface in the log whose frames to take, where there are several")
+                    "Interface in the log whose frames are used, if it contains several")
         ->type_name("IFACE");
     command.add_option("--can", options.can.interface, "Instead of --log: this CAN interface, in real time")
         ->type_name("IFACE");
-    command.add_option("--duration", options.can.duration_s, "Of --can, seconds; else until Ctrl-C")
+    command.add_option("--duration", options.can.duration_s, "Seconds, with --can; default: until Ctrl-C")
         ->check(number_in(0.0, 1e9))
         ->type_name("S");
     command.add_option("--record", options.can.record, "Log of what --can receives")->type_name("L.log");
@@ -31,27 +31,26 @@ void add_bus_options(CLI::App& command, ReplayOptions& options) {
 /// Adds the options for what the replay writes and how it learns.
 void add_result_options(CLI::App& command, ReplayOptions& options) {
     command
-        .add_option(
-            "-o,--output", options.csv,
-            "One row per tick: measured, predicted, deviation, nis, learned, status. With --can it is "
-            "written as the ticks come, and there at any time")
+        .add_option("-o,--output", options.csv,
+                    "One row per tick: measured, predicted, deviation, nis, learned, status. With --can the "
+                    "file is updated every 0.25 s and can be read during the run")
         ->type_name("OUT.csv");
     command
         .add_option(
             "--report", options.report,
-            "Self-contained page with curves and figures. Of more than 60000 ticks it has the extremes, and "
-            "R.ticks.csv beside it has all, unless -o writes them there")
+            "Self-contained page with curves and figures. Above 60000 ticks the curves contain the extremes "
+            "only; R.ticks.csv in the same folder contains all ticks, unless -o writes them there")
         ->type_name("R.html");
     command
         .add_option("--horizon", options.horizon,
-                    "Samples T of the paper's index epsilon; 0: none; without: 25, with --can none")
+                    "Samples T of the paper's index epsilon; 0: none; default: 25, with --can 0")
         ->check(whole_number_in(0, 10000));
     command.add_flag("--from-prior", options.from_prior,
                      "Start with nothing learned: keep the hyperparameters, drop the trained start");
     command
         .add_flag("--frozen", options.frozen,
-                  "Predict without learning: nothing of the recording's outputs reaches the model; errors "
-                  "and innovations are reported as always")
+                  "Predict without learning: the recording's outputs do not change the model; errors and "
+                  "innovations are reported as usual")
         ->excludes("--from-prior");
 }
 
@@ -62,10 +61,9 @@ void add_replay_command(CLI::App& app, Command& chosen) {
     CLI::App* command =
         app.add_subcommand("replay", "Runs the embedded estimator, tick by tick, over recordings");
     command
-        ->add_option(
-            "--model", options->models,
-            "Model that `dfdyn train` wrote; several: their predictions are combined, each weighted by how "
-            "well it predicted lately")
+        ->add_option("--model", options->models,
+                     "Model that `dfdyn train` wrote; several: their predictions are combined, each weighted "
+                     "by its recent accuracy")
         ->required()
         ->delimiter(',')
         ->type_name("M.json[,...]");

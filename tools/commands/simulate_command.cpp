@@ -134,8 +134,7 @@ int run(const SimulateOptions& options) {
 void add_simulate_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<SimulateOptions>();
     CLI::App* command = app.add_subcommand(
-        "simulate",
-        "Simulates an arm, its actuators and its sensors; writes what the sensors would have shown");
+        "simulate", "Simulates an arm, its actuators and its sensors; writes the readings of the sensors");
     command->add_option("--robot", options->robot, "The arm")->required()->type_name("R.urdf");
     command
         ->add_option("--scenario", options->scenario,
@@ -147,10 +146,12 @@ void add_simulate_command(CLI::App& app, Command& chosen) {
         ->add_option("--truth", options->truth,
                      "The same rows without sensors: true motion, torques, friction, wrench, tip")
         ->type_name("T.csv");
-    command->add_option("--candump", options->candump, "The frames of the devices in --bus, as of candump -L")
+    command
+        ->add_option("--candump", options->candump,
+                     "The frames of the devices in --bus, in the format of candump -L")
         ->type_name("L.log");
     command->add_option("--bus", options->bus, "The devices: docs/reference/can.md")->type_name("B.json");
-    command->add_option("--seed", options->seed, "Instead of the scenario's own")
+    command->add_option("--seed", options->seed, "Seed to use instead of the scenario's")
         ->check(seed_number())
         ->type_name("N");
     command->footer("Example:\n  dfdyn simulate --robot arm.urdf --scenario circles.json -o run.csv\n"

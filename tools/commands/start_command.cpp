@@ -315,9 +315,8 @@ int run(StartOptions options) {
 
 void add_start_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<start_command::StartOptions>();
-    CLI::App* command = app.add_subcommand(
-        "start",
-        "From a recording to a controller: checks, diagnoses, trains what fits, replays, writes a project");
+    CLI::App* command = app.add_subcommand("start", "Makes a controller from a recording: checks, diagnoses, "
+                                                    "trains what fits, replays, writes a project");
     options->recordings.add_to(*command);
     options->robot.add_to(*command, false);
     command

@@ -64,26 +64,29 @@ void add_physics_options(CLI::App& command, TrainOptions& options) {
     options.robot.add_to(command, false);
     command
         .add_option("--effects", options.effects,
-                    "Named effects that the physics learns beside the rigid body, of " +
+                    "Named effects that the physics learns in addition to the rigid body, any of " +
                         trainable_effect_names())
         ->delimiter(',')
         ->check(one_of(words_of(trainable_effect_names())))
         ->type_name("NAME[,NAME...]");
     command
         .add_option("--sign-velocity", options.sign_velocity,
-                    "Coulomb friction is tanh(qd / this): rad/s at which the sign is at three quarters")
+                    "Coulomb friction is tanh(qd / this); at this velocity (rad/s) it has three quarters of "
+                    "its level")
         ->check(positive_number())
         ->capture_default_str();
     command
         .add_option("--torque-constants", options.torque_constants,
-                    "N m/A at each joint, for --outputs i; else estimated from the nominal robot")
+                    "N m/A at each joint, for --outputs i; default: estimated with the nominal robot")
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("K1,K2...");
     command.add_flag("--own-motion", options.training.physics.own_motion,
-                     "The physics sees positions filtered to velocity and acceleration by poles of its own, "
-                     "whatever the input");
-    command.add_option("--prior", options.prior, "Of the physical parameters: what gamma^2 is the same for")
+                     "The physics computes velocity and acceleration with filters of its own, for any input");
+    command
+        .add_option("--prior", options.prior,
+                    "Prior of the physical parameters: gamma^2 is equal for columns of equal size (scaled), "
+                    "or for all parameters (unit, as in the paper); or one variance each (diagonal)")
         ->check(one_of({"scaled", "unit", "diagonal"}))
         ->capture_default_str();
 }
@@ -98,29 +101,30 @@ void add_training_options(CLI::App& command, TrainingOptions& training) {
     command.add_flag("--orthogonal,!--independent", training.orthogonal,
                      "Orthogonal (default) or independent random features");
     command.add_flag("--relevance,!--no-relevance", training.relevance,
-                     "Input STD with ML: velocity and acceleration have gains of their own (default), or, as "
-                     "in the paper, one width for inputs of unit deviation");
+                     "Input STD with ML: separate gains for velocity and acceleration (default), or, as in "
+                     "the paper, one width for inputs of unit standard deviation");
     command.add_flag(
         "--centred,!--not-centred", training.centred,
-        "Model NP: outputs less their mean (default), or, as in the paper, a prior of mean zero");
+        "Model NP: outputs minus their mean (default), or, as in the paper, a prior of mean zero");
     command.add_flag(
         "--shrinkage,!--no-shrinkage", training.shrinkage,
-        "Physics starts near the robot's own parameters; away from the data, predictions go back to the "
-        "mean (NP), the physics (SP, SP2, SPK) or zero (P), and standard deviations grow to what the "
-        "outputs span (default), or, as in the paper, none of it");
-    command.add_option("--likelihood-rows", training.likelihood_rows, "Samples in the exact kernel, at most")
+        "Default: physics starts near the robot's own parameters; away from the data, predictions return to "
+        "the mean (NP), the physics (SP, SP2, SPK) or zero (P), and standard deviations grow to the range of "
+        "the outputs. With --no-shrinkage, as in the paper, none of this");
+    command.add_option("--likelihood-rows", training.likelihood_rows, "Maximum samples in the exact kernel")
         ->check(whole_number_in(20, 20000))
         ->capture_default_str();
     command
-        .add_option("--refinement", training.refinement_evaluations,
-                    "Evaluations, at most, of the likelihood of the random features on all rows; 0: exact "
-                    "kernel only")
+        .add_option(
+            "--refinement", training.refinement_evaluations,
+            "Largest number of evaluations of the likelihood of the random features on all rows; 0: exact "
+            "kernel only")
         ->check(whole_number_in(0, 100000))
         ->capture_default_str();
     command.add_option("--starts", training.starts, "Local searches from different starts")
         ->check(whole_number_in(1, 1000))
         ->capture_default_str();
-    command.add_option("--seed", training.seed, "Of the starts and of the random features")
+    command.add_option("--seed", training.seed, "Seed of the starts and of the random features")
         ->check(seed_number())
         ->capture_default_str();
 }
@@ -297,12 +301,12 @@ void add_model_options(CLI::App& command, TrainOptions& options) {
                     "Structure of the model: features (NP), the robot (P), or both")
         ->check(one_of(structure_names()))
         ->capture_default_str();
-    command.add_option("--input", options.input, "What the features see of the positions")
+    command.add_option("--input", options.input, "Input of the features, computed from the positions")
         ->check(one_of(words_of(input_names(","))))
         ->capture_default_str();
     command
         .add_option("--hyper", options.hyper,
-                    "How hyperparameters are found: marginal likelihood, or cross validation over a grid")
+                    "Estimation of the hyperparameters: marginal likelihood, or cross validation over a grid")
         ->check(one_of({"ML", "CV"}))
         ->capture_default_str();
     command.add_option("-o,--output", options.model, "The model")->required()->type_name("M.json");
