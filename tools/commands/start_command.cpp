@@ -173,7 +173,7 @@ Candidate train_network(const Arm& arm, const SplitRecordings& split, const Star
 /// Prints the candidates with their errors; returns the best one that fits.
 const Candidate& choose(std::vector<Candidate>& candidates, const SplitRecordings& split,
                         const TargetBudget& budget) {
-    say("comparison on the last 30 % of the rows, which trained nothing");
+    say("comparison on the last 30 % of the rows, which were not used for training");
     const Candidate* best = nullptr;
     for (Candidate& one : candidates) {
         const Activity activity("replaying " + one.name);
@@ -204,7 +204,7 @@ const Candidate& choose(std::vector<Candidate>& candidates, const SplitRecording
               << (candidates.size() > 1 ? "the least error; within 2 % the least flash\n" : "the only one\n");
     if (!(best->error < 1)) { // the error of predicting the mean
         std::cerr
-            << "warning: on rows that trained nothing the model predicts no better than the mean (nRMSE "
+            << "warning: on rows not used for training, the model predicts no better than the mean (nRMSE "
             << rounded_text(best->error) << "): record longer, with more varied motion\n";
     }
     return *best;

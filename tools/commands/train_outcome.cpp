@@ -17,9 +17,10 @@ namespace dfdyn::tools {
 namespace {
 
 void print_physics(const PhysicsModel& physics) {
-    std::cout << "physics: " << physics.selected.size() << " parameters that the recording can tell apart"
-              << (physics.prior_variance > 0 ? ", learned on" : ", fixed")
-              << "; each stands for the combination that the recording determines\n";
+    std::cout << "physics: " << physics.selected.size()
+              << " parameters that the recording determines separately"
+              << (physics.prior_variance > 0 ? ", which continue to learn" : ", fixed")
+              << "; each represents a determined combination of parameters\n";
     for (std::size_t i = 0; i < physics.selected.size(); ++i) {
         std::cout << "  " << physics.parameter_names[i] << ' '
                   << physics.column_scale[i] * physics.start.weights[i] << '\n';

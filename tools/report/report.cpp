@@ -141,8 +141,8 @@ std::string thinning_html(const Report& report, std::size_t kept) {
         return "";
     }
     const std::string all = std::to_string(report.time_s.size());
-    return "<p>The curves have the extremes among " + all + " ticks, " + std::to_string(kept) +
-           " of them. All " + all + " ticks " +
+    return "<p>The curves contain " + std::to_string(kept) + " of " + all +
+           " ticks, among them all extremes. All ticks " +
            (report.full_data.empty() ? "are in the table that <code>dfdyn replay -o</code> writes"
                                      : "are in <a href=\"" + link_to(report.full_data) + "\">" +
                                            escape_html(report.full_data) + "</a>") +

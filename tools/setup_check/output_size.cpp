@@ -47,7 +47,8 @@ std::string unit_text(const ArmRecording& arm, double factor) {
     if (!arm.gains_known) {
         return found + " A per N·m of the robot's model: looks like mA; " + unit_remedy("i", "mA");
     }
-    return found + " times the robot model's outputs with the same course: another unit, such as " +
+    return found +
+           " times the outputs of the robot's model, with the same shape over time: another unit, such as " +
            (arm.kind == OutputKind::motor_current ? "mA, or torque constants of the motor, not of the joint"
             : arm.wrench()                        ? "mN"
                                                   : "mN·m or N·cm") +
@@ -58,7 +59,8 @@ std::string heavy_text(const ArmRecording& arm, double factor) {
     return "columns " + listed(arm.recording.output.names) +
            ": expected outputs of the robot's model, found " + rounded_text(factor) +
            (arm.gains_known ? " times those" : " A per N·m of the model") +
-           " with the same course: the robot's masses look like grams; divide the masses and inertias in its "
+           ", with the same shape over time: the robot's masses look like grams; divide the masses and "
+           "inertias in its "
            "file by 1000";
 }
 

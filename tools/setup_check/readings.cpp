@@ -262,7 +262,7 @@ SetupFindings check_readings(const ArmRecording& arm) {
     }
     const bool certain = best->may_refuse && ratio > certain_ratio;
     return {{best->fault, certain ? Severity::mistake : Severity::warning, best->columns,
-             best->expected + ": the other way round the model leaves " +
+             best->expected + ": with the correction the model leaves " +
                  percent(mean_of(best->left, best->concerned)) + " of the variance instead of " +
                  percent(mean_of(now, best->concerned)) + "; " + best->remedy}};
 }

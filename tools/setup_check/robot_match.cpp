@@ -103,14 +103,14 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
     if (columns.empty() || ratio < far_better * count || left < much * count) {
         return {};
     }
-    return {{SetupFault::wrong_robot, Severity::mistake, listed(columns),
-             "columns " + listed(columns) +
-                 ": expected the outputs of the robot's model, found that it leaves " +
-                 percent(left / count) +
-                 " of their variance, any payload included, and smooth functions of the motion " +
-                 percent(left / count * std::exp(-ratio / count)) +
-                 ": another robot, tip, base, mounting or zeros of joints; give the file of this robot "
-                 "(--robot)"}};
+    return {
+        {SetupFault::wrong_robot, Severity::mistake, listed(columns),
+         "columns " + listed(columns) +
+             ": expected the outputs of the robot's model, found that the model with any payload leaves " +
+             percent(left / count) + " of their variance, and smooth functions of the motion " +
+             percent(left / count * std::exp(-ratio / count)) +
+             ": another robot, tip, base, mounting or zeros of joints; give the file of this robot "
+             "(--robot)"}};
 }
 
 } // namespace dfdyn::tools

@@ -92,7 +92,8 @@ std::string ticks_header(const TrainedModel& model, const Recording& recording) 
         units.push_back(unit_of(output));
     }
     std::ostringstream header;
-    header << "// Rows of the recording that trained nothing, and the last prediction of `dfdyn replay`.\n"
+    header << "// Rows of the recording that were not used for training, and the last prediction of `dfdyn "
+              "replay`.\n"
            << "// clang-format off\n#pragma once\n\n#include \"robot_model.hpp\"\n\n#include <cstdint>\n\n"
            << "struct RecordedTick {\n    std::int64_t time_ns;\n"
            << "    float position[robot_model::Model::joints]; // rad (m for prismatic joints)\n"

@@ -130,7 +130,7 @@ TEST_CASE("train prints the results of its physics") {
     CAPTURE(estimated.error);
     REQUIRE(estimated.status == 0);
     CHECK_THAT(estimated.out, Catch::Matchers::ContainsSubstring(
-                                  "; each stands for the combination that the recording determines\n"));
+                                  "; each represents a determined combination of parameters\n"));
     CHECK_THAT(estimated.out, Catch::Matchers::ContainsSubstring(" (estimated)"));
     const Outcome given = run_program(directory, train + "--torque-constants 13,13,13,9,9,9.5 --centred");
     CHECK_THAT(given.out, Catch::Matchers::ContainsSubstring(

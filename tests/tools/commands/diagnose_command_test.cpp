@@ -137,7 +137,7 @@ TEST_CASE("diagnose names friction and rotors and writes report and figures and 
     CHECK_THAT(file_content(folder + "/corrected_robot.xml"), ContainsSubstring("<mujoco model="));
 
     const std::string page = file_content(folder + "/report.html");
-    for (const char* part : {"What the simulation of", "Measured, simulated, extended", "What is left",
+    for (const char* part : {"What the simulation of", "Measured, simulated, extended", "Remaining error",
                              "viscous friction at joint1", "Considered and rejected",
                              "As an online learner sees it", "velocity of joint 1 (rad/s)"}) {
         CHECK_THAT(page, ContainsSubstring(part));

@@ -136,7 +136,7 @@ TEST_CASE("models with a robot are trained and replayed with one command each") 
         const Outcome trained = bench.train(robot + call.arguments + " --header " + bench.path("model.hpp"));
         CAPTURE(trained.error);
         REQUIRE(trained.status == 0);
-        CHECK_THAT(trained.out, ContainsSubstring("parameters that the recording can tell apart"));
+        CHECK_THAT(trained.out, ContainsSubstring("parameters that the recording determines separately"));
         CHECK_FALSE(file_content(bench.path("model.hpp")).empty());
         const Outcome replayed = bench.replay(bench.path("run.csv"), "--rows 300: -o " + bench.path("r.csv"));
         CAPTURE(replayed.error);

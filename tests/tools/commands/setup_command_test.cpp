@@ -165,7 +165,8 @@ TEST_CASE("diagnose has the same check and the same option to skip it") {
     CHECK(refused["refusals"][0]["code"] == "output_unit");
     CHECK_FALSE(std::filesystem::exists(bench.path("out/extended_model.json")));
     const auto [unchecked, next] = diagnose(bench, "--no-setup-check", ":200"); // reports the next reason
-    CHECK_THAT(unchecked.out, !ContainsSubstring("looks like mA") && ContainsSubstring("causes need 3 s"));
+    CHECK_THAT(unchecked.out,
+               !ContainsSubstring("looks like mA") && ContainsSubstring("a diagnosis needs at least 3 s"));
     CHECK(next["refusals"][0]["code"] == "too_little_information");
 }
 

@@ -94,7 +94,7 @@ void add_feature_learners(OnlineView& view, const DiagnosisWork& work, const Mod
     std::vector<std::string> names = trainable_names(extension);
     if (!names.empty()) {
         kernel.physics = physics_of(work, std::move(names));
-        add("SPK with the names", kernel);
+        add("SPK with the named effects", kernel);
     }
 }
 
@@ -108,9 +108,10 @@ OnlineView online_view(const DiagnosisWork& work, const ModelExtension& extensio
     view.learners.push_back(error_of("P: the rigid body alone", nominal, joined));
     if (!extension.columns.empty()) {
         const TrainedModel names = extended_model(names_only(work, extension), recordings);
-        view.learners.push_back(error_of("P with the names, their coefficients from zero", names, joined));
+        view.learners.push_back(error_of("P with the named effects, which start at zero", names, joined));
     }
-    view.learners.push_back(error_of("the extended model, from its own start", written, joined));
+    view.learners.push_back(
+        error_of("the extended model, which starts at the values found", written, joined));
     if (joined.row_count() > most_rows) {
         view.left_out = "the recording has more than 40,000 rows";
         return view;

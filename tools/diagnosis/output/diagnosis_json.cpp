@@ -143,9 +143,8 @@ ordered_json diagnosis_json(const Diagnosis& diagnosis) {
         {"heldout",
          {{"from", diagnosis.heldout_from_s},
           {"to", diagnosis.heldout_to_s},
-          {"note", has_held_out(diagnosis)
-                       ? "these figures are on data that fitted nothing"
-                       : "nothing was held out: these figures are on data that fitted the model"}}}};
+          {"note", has_held_out(diagnosis) ? "errors on data that were not used for fitting"
+                                           : "nothing was held out: errors on the data used for fitting"}}}};
     if (!diagnosis.recordings.empty()) {
         json["recordings"] = diagnosis.recordings;
     }

@@ -80,13 +80,14 @@ ChartCurve white_level(const ChartCurve& rest) {
 }
 
 ReportTable rest_table(const DiagnosisWork& work, const Eigen::MatrixXd& rest) {
-    ReportTable table{"What is left",
-                      {"output", "unit", "rms left", "of the output's deviation", "autocorrelation, lag 1"},
-                      {},
-                      {}};
+    ReportTable table{
+        "Remaining error",
+        {"output", "unit", "rms", "share of the output's standard deviation", "autocorrelation, lag 1"},
+        {},
+        {}};
     table.note = "Over " + work.diagnosis.scope +
-                 ", low-passed against aliasing, of the model fitted to all of it. "
-                 "Autocorrelation 0: white; near 1: slow, so that something is still to be named.";
+                 ", after an anti-aliasing filter, of the model fitted to all of it. Autocorrelation 0: "
+                 "white noise; near 1: a slow error whose cause is not named.";
     const Eigen::MatrixXd measured = in_output_units(work, work.measured);
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
         const auto index = static_cast<std::size_t>(output);
@@ -100,8 +101,8 @@ ReportTable rest_table(const DiagnosisWork& work, const Eigen::MatrixXd& rest) {
 }
 
 ReportTable unexplained_table(const Diagnosis& diagnosis) {
-    ReportTable table{"Predictable, but by no name of the catalogue",
-                      {"output", "share of its deviation", "depends on", "note"},
+    ReportTable table{"Predictable, but by no cause of the catalogue",
+                      {"output", "share of the output's standard deviation", "depends on", "note"},
                       {},
                       {}};
     for (const Unexplained& entry : diagnosis.unexplained) {
@@ -144,13 +145,13 @@ PageSection comparison_section(const DiagnosisWork& work, const std::string& ful
     PageSection section{"Measured, simulated, extended", {}, {}, {}};
     section.paragraphs.push_back(
         "Simulated: the rigid body of the robot's file along the measured motion. Extended: with "
-        "all named effects, or plain least squares where that errs less, fitted to " +
+        "all named effects, or plain least squares where its error is smaller, fitted to " +
         work.diagnosis.scope + ". The first 20 s of the " +
         (has_held_out(work.diagnosis) ? "held-out time" : "recording") + " are shown.");
     if (!full_data.empty()) {
         section.paragraphs.push_back(
             "Curves have at most " + std::to_string(most_points) + " points. The file " + full_data +
-            " beside this page has every row that the diagnosis used, at its own rate.");
+            " in the same folder has every row that the diagnosis used, at its own rate.");
     }
     const MeasuredMotion& motion = work.signals->measured;
     const std::string time_label = time_axis(motion).label;
@@ -168,23 +169,23 @@ PageSection comparison_section(const DiagnosisWork& work, const std::string& ful
         XyChart error{std::string("error of ").append(name), time_label,
                       std::string("error (").append(unit).append(")")};
         error.height = 220;
-        error.lines = {
-            line_over_time(motion, "of the simulated", measured.col(output) - nominal.col(output), rows),
-            line_over_time(motion, "of the extended", measured.col(output) - extended.col(output), rows)};
+        error.lines = {line_over_time(motion, "simulated", measured.col(output) - nominal.col(output), rows),
+                       line_over_time(motion, "extended", measured.col(output) - extended.col(output), rows)};
         section.charts.push_back({"errors_" + name, error.title, xy_chart(error)});
     }
     return section;
 }
 
 PageSection rest_section(const DiagnosisWork& work) {
-    PageSection section{"What is left", {}, {}, {}};
+    PageSection section{"Remaining error", {}, {}, {}};
     const Eigen::MatrixXd nominal = in_output_units(work, work.measured - work.signals->nominal);
     const Eigen::MatrixXd rest = in_output_units(work, work.measured - work.extended);
     section.tables.push_back(rest_table(work, rest));
-    section.paragraphs.emplace_back(
-        work.diagnosis.unexplained.empty()
-            ? "Nothing that smooth functions of position, velocity and acceleration could predict is left."
-            : "Part of what is left can be predicted, but has no name: see the table.");
+    section.paragraphs.emplace_back(work.diagnosis.unexplained.empty()
+                                        ? "Smooth functions of position, velocity and acceleration predict "
+                                          "nothing of the remaining error."
+                                        : "Part of the remaining error is predictable, but matches no cause "
+                                          "of the catalogue: see the table.");
     if (!work.diagnosis.unexplained.empty()) {
         section.tables.push_back(unexplained_table(work.diagnosis));
     }
@@ -192,12 +193,12 @@ PageSection rest_section(const DiagnosisWork& work) {
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
         const std::string& unit = work.diagnosis.output_units[static_cast<std::size_t>(output)];
-        const ChartCurve left = spectrum(rows, "left by the extended", rest, output);
+        const ChartCurve left = spectrum(rows, "extended", rest, output);
         section.charts.push_back(
             {"spectrum_" + name, name,
              curve_chart(std::string("spectrum of the error of ").append(name), "frequency (Hz)",
                          std::string("per bin (").append(unit).append(")"),
-                         {white_level(left), spectrum(rows, "of the simulated", nominal, output), left})});
+                         {white_level(left), spectrum(rows, "simulated", nominal, output), left})});
     }
     return section;
 }

@@ -61,7 +61,7 @@ PageChart evidence_chart(const DiagnosisWork& work, const Finding& finding, std:
     XyChart chart;
     const std::string& output = work.diagnosis.output_names[static_cast<std::size_t>(finding.output)];
     chart.title =
-        std::string("Error of ").append(output).append(" without this effect, the others taken off");
+        std::string("Error of ").append(output).append(" without this effect, all other effects subtracted");
     chart.x_label = over.label;
     chart.y_label = std::string("error (").append(unit_of(work, finding)).append(")");
     chart.points = {"samples", thinned(x, most_dots), thinned(error, most_dots)};
@@ -88,13 +88,12 @@ ReportTable parameter_table(const Finding& finding) {
 /// The main parameter in each of several recordings.
 ReportTable recordings_table(const Finding& finding) {
     const std::string unit = finding.parameters.front().unit;
-    ReportTable table{
-        finding.parameters.front().name + " in each recording",
-        {"recording", "value (" + unit + ")", "95 % interval"},
-        {},
-        "Standard deviation between recordings: " + rounded_text(finding.spread) + " " + unit +
-            ", which the interval above contains. A recording that tells little has a value near "
-            "the common one."};
+    ReportTable table{finding.parameters.front().name + " in each recording",
+                      {"recording", "value (" + unit + ")", "95 % interval"},
+                      {},
+                      "Standard deviation between recordings: " + rounded_text(finding.spread) + " " + unit +
+                          ", which the interval above includes. A recording with little information has a "
+                          "value near the common one."};
     for (const ValueOfRecording& one : finding.by_recording) {
         table.rows.push_back({one.recording, rounded_text(one.value),
                               rounded_text(one.low).append(" … ").append(rounded_text(one.high))});
@@ -103,7 +102,7 @@ ReportTable recordings_table(const Finding& finding) {
 }
 
 ReportTable alternatives_table(const Finding& finding) {
-    ReportTable table{"Considered and rejected", {"cause", "why not"}, {}, {}};
+    ReportTable table{"Considered and rejected", {"cause", "reason"}, {}, {}};
     for (const OtherCause& other : finding.alternatives) {
         table.rows.push_back({cause_words(other), other.why_not});
     }
@@ -111,11 +110,11 @@ ReportTable alternatives_table(const Finding& finding) {
 }
 
 std::string tie_sentence(const Finding& finding) {
-    std::string text = "This motion hardly tells it from ";
+    std::string text = "This motion cannot distinguish it from ";
     for (std::size_t i = 0; i < finding.indistinguishable.size(); ++i) {
         text.append(i == 0 ? "" : "; ").append(cause_words(finding.indistinguishable[i]));
     }
-    return text.append(". Any of them may be the true one; the error falls as much with each.");
+    return text.append(". Each of them may be the true cause: all reduce the error equally.");
 }
 
 } // namespace
@@ -133,7 +132,7 @@ PageSection finding_section(const DiagnosisWork& work, const Finding& finding, s
     if (!finding.indistinguishable.empty()) {
         section.paragraphs.push_back(tie_sentence(finding));
     }
-    section.paragraphs.push_back("To settle it, " + finding.confirm + ".");
+    section.paragraphs.push_back("Confirming experiment: " + finding.confirm + ".");
     section.charts.push_back(evidence_chart(work, finding, number));
     section.tables.push_back(parameter_table(finding));
     if (!finding.by_recording.empty()) {

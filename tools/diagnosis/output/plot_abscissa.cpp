@@ -76,7 +76,7 @@ PlotAbscissa plot_abscissa(const DiagnosisSignals& signals, const Finding& findi
     const PlottedFinding plotted{signals, finding, share};
     const Effect& effect = effect_named(finding.effect);
     return effect.plotted_over != nullptr ? effect.plotted_over(plotted)
-                                          : plotted.whole("what the named cause should give", share);
+                                          : plotted.whole("contribution predicted by the named cause", share);
 }
 
 } // namespace dfdyn::tools

@@ -91,8 +91,9 @@ void doubt_contradicted_findings(DiagnosisWork& work, const std::vector<double>&
         const std::vector<Size> sizes = sizes_of(work, finding, ends_s);
         if (sizes.size() > 1 && contradict(sizes)) {
             finding.confidence = std::min(finding.confidence, unlikely);
-            finding.evidence += " (the recordings contradict it: its size in each, as a factor, is " +
-                                factors_text(sizes) + ")";
+            finding.evidence +=
+                " (the recordings contradict it: relative to the size found, its size in each is " +
+                factors_text(sizes) + ")";
         }
     }
 }

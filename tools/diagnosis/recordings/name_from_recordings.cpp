@@ -179,9 +179,9 @@ void add_missing(Diagnosis& diagnosis, const Eigen::VectorXd& time_s, const Seve
             diagnosis.suspicions.push_back(
                 {several.names[r] +
                  (fitted
-                      ? " has longer time steps than the others: it is in the values of all recordings, but "
-                        "no cause was sought in it"
-                      : " has no two seconds without a gap, and is in no value of all recordings")});
+                      ? " has longer time steps than the others: it contributes to the common values, but no "
+                        "cause was sought in it"
+                      : " has no two seconds without a gap, and does not contribute to the common values")});
         }
         before = end;
     }

@@ -78,10 +78,10 @@ void take_better(Diagnosis& diagnosis) {
         }
     }
     if (!names.empty()) {
-        diagnosis.suspicions.push_back({"at " + names +
-                                        " the causes found err more than plain least squares per joint "
-                                        "(gain, inertia, viscous and dry friction, "
-                                        "offset), which the extended model has there instead"});
+        diagnosis.suspicions.push_back(
+            {"at " + names +
+             " the causes found err more than plain least squares per joint "
+             "(gain, inertia, viscous and dry friction, offset), which replaces them in the extended model"});
     }
 }
 
@@ -92,18 +92,19 @@ std::string reason_of_harm(const Diagnosis& diagnosis, Eigen::Index output) {
     const double nominal = diagnosis.nominal.moving_nrmse[output];
     const double extended = diagnosis.extended.moving_nrmse[output];
     if (std::isnan(nominal)) {
-        return "where the joint stands all of that time, and its friction may hold whatever it was left with";
+        return "where the joint is stationary all of that time, so that static friction may hold any torque";
     }
     if (extended < clear_fall * nominal) {
-        return "though while the joint moves the error falls from " + percent(nominal) + " to " +
-               percent(extended) + ": standing, its friction may hold whatever it was left with";
+        return "although the error during motion decreases from " + percent(nominal) + " to " +
+               percent(extended) + ": at standstill, static friction may hold any torque";
     }
     return "";
 }
 
 /// Adds a suspicion if causes from the first part of a recording increase the error on the last part.
 void suspect_poor_extension(Diagnosis& diagnosis) {
-    const std::string lead = "on held-out time the extended model errs more than the nominal one at ";
+    const std::string lead =
+        "on held-out time the extended model has a larger error than the nominal one at ";
     std::string worse;
     for (Eigen::Index output = 0; output < diagnosis.nominal.rms.size(); ++output) {
         if (!(diagnosis.extended.rms[output] > diagnosis.nominal.rms[output])) {
@@ -119,7 +120,7 @@ void suspect_poor_extension(Diagnosis& diagnosis) {
     }
     if (!worse.empty()) {
         diagnosis.suspicions.push_back(
-            {lead + worse + ": this recording is too short, or too little like itself, for these causes"});
+            {lead + worse + ": for these causes the recording is too short, or its parts differ too much"});
     }
 }
 

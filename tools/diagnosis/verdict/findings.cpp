@@ -50,7 +50,7 @@ void weigh_alternatives(Finding& finding, const FittedEffects& fitted_effects, c
         if (finding.alternatives.size() < most_alternatives && margin < finding.margin_to_nothing) {
             const double gap = finding.margin_to_nothing - margin;
             cause.why_not = "explains " + rounded_text(100 * std::max(0.0, gap) / finding.margin_to_nothing) +
-                            " % of what this cause does";
+                            " % of what this cause explains";
             finding.alternatives.push_back(std::move(cause));
         }
     }
@@ -103,8 +103,8 @@ std::string held_words(const StationaryContact& push, bool prismatic) {
         return rounded_text(value) + " ± " + rounded_text(deviations_of_95 * deviation) + " " +
                unit_at_joint("N·m", prismatic);
     };
-    return numbered("joint", push.joint) + " stands, where its friction can change by " +
-           interval(push.held, push.held_deviation) + ", and its " + (prismatic ? "force" : "torque") +
+    return numbered("joint", push.joint) + " is stationary: its friction can change by " +
+           interval(push.held, push.held_deviation) + ", but its " + (prismatic ? "force" : "torque") +
            " changes by " + interval(std::abs(push.change), push.change_deviation) + "; ";
 }
 

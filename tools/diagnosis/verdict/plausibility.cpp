@@ -20,7 +20,7 @@ void suspect_rate(const Recording& recording, std::vector<Suspicion>& result) {
     constexpr double shortest_step_s = 2e-5;
     const double step = recording.row_count() < 2 ? longest_step_s : median_step_s(recording);
     if (step > longest_step_s || step < shortest_step_s) {
-        result.push_back({"rows are " + rounded_text(step) + " s apart: causes need " +
+        result.push_back({"rows are " + rounded_text(step) + " s apart: a diagnosis needs " +
                               rounded_text(shortest_step_s) + " to " + rounded_text(longest_step_s) + " s",
                           "clock", "t"});
     }
@@ -31,8 +31,8 @@ void suspect_duration(const Recording& recording, std::vector<Suspicion>& result
         recording.row_count() == 0 ? 0 : recording.time_s.back() - recording.time_s.front();
     if (duration_s < least_duration_s) {
         result.push_back({std::string("the recording is ") + rounded_text(duration_s) +
-                              " s long: causes need " + rounded_text(least_duration_s) +
-                              " s at least, better 60",
+                              " s long: a diagnosis needs at least " + rounded_text(least_duration_s) +
+                              " s, better 60",
                           "too_little_information", "t"});
     }
 }
@@ -46,14 +46,14 @@ void suspect_standstill(const DiagnosisSignals& signals, const Recording& record
         }
     }
     if (standing.size() == signals.joints()) {
-        result.push_back({"the arm stands still: no cause that depends on motion can be told from another",
+        result.push_back({"the arm is stationary: causes that depend on motion cannot be distinguished",
                           "standing", listed(recording.position.names)});
     } else if (signals.joints() > 1 && standing.size() + 1 >= signals.joints()) {
-        result.push_back(
-            {"only one joint moves: causes at the others cannot be seen, and many look the same"});
+        result.push_back({"only one joint moves: causes at the others are not observable, and many cannot be "
+                          "distinguished"});
     } else if (!standing.empty()) {
         result.push_back(
-            {"joint " + counted_from_one(standing) + " hardly moves: its own causes cannot be seen"});
+            {"joint " + counted_from_one(standing) + " hardly moves: its own causes are not observable"});
     }
 }
 
@@ -82,11 +82,10 @@ void suspect_robot(const DiagnosisSignals& signals, const Eigen::MatrixXd& measu
                    const Recording& recording, std::vector<Suspicion>& result) {
     const double left = foreign_share(signals, measured);
     if (left > 0.6) {
-        result.push_back(
-            {"the robot's model, with friction, has next to nothing in common with the outputs (" +
-                 rounded_text(100 * left) +
-                 " % of their variance is left): another robot, tip, base, mounting or output",
-             "wrong_robot", listed(recording.output.names)});
+        result.push_back({"the robot's model with friction explains almost nothing of the outputs (" +
+                              rounded_text(100 * left) +
+                              " % of their variance remains): another robot, tip, base, mounting or output",
+                          "wrong_robot", listed(recording.output.names)});
     }
 }
 

@@ -5,9 +5,9 @@
 
 #include <string>
 
-TEST_CASE("a diagnosis calls its errors held out only if a part of the recording fitted nothing") {
+TEST_CASE("a diagnosis reports held-out errors only if part of the recording was not used for fitting") {
     dfdyn::tools::Diagnosis diagnosis;
-    const std::string claim = "these figures are on data that fitted nothing";
+    const std::string claim = "errors on data that were not used for fitting";
     CHECK(dfdyn::tools::diagnosis_json(diagnosis)["heldout"]["note"] != claim);
     diagnosis.heldout_from_s = 40;
     diagnosis.heldout_to_s = 60;

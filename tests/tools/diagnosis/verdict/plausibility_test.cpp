@@ -115,9 +115,9 @@ TEST_CASE(
     }
     check_refused(diagnosis_of(other.recording()), "wrong_robot",
                   "expected the outputs of the robot's model");
-    check_refused(diagnosis_of(CleanRecording(30, 0.001).recording()), "standing", "the arm stands still");
+    check_refused(diagnosis_of(CleanRecording(30, 0.001).recording()), "standing", "the arm is stationary");
     check_refused(diagnosis_of(CleanRecording(2).recording()), "too_little_information",
-                  "s long: causes need");
+                  "s long: a diagnosis needs");
     CleanRecording one;
     for (Index joint = 1; joint < 6; ++joint) {
         one.position.col(joint).setConstant(one.position(0, joint));
