@@ -44,7 +44,7 @@ bool suspect(Diagnosis& diagnosis, std::vector<Suspicion> suspicions) {
     return refused(diagnosis);
 }
 
-/// Finds the effects, and pushes at rest in what they leave.
+/// Finds the effects, and contacts during standstill in their residual.
 void fit(DiagnosisWork& work, const FitOptions& how) {
     const DiagnosisSignals& signals = *work.signals;
     work.fitted_effects = find_effects(signals, work.measured, how);
@@ -55,7 +55,7 @@ void fit(DiagnosisWork& work, const FitOptions& how) {
     }
 }
 
-/// Lists the outputs with dependences that have no name.
+/// Lists the outputs with a predictable residual that matches no cause of the catalogue.
 void add_unexplained(DiagnosisWork& work) {
     std::vector<Unexplained>& unexplained = work.diagnosis.unexplained;
     unexplained = unnamed_dependences(*work.signals, work.measured, work.fitted_effects);

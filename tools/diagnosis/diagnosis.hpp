@@ -33,9 +33,9 @@ struct OtherCause {
 /// A reason why a recording may be unsuitable.
 struct Suspicion {
     std::string text;       ///< one sentence
-    std::string code = {};  ///< as in `refusals` of diagnosis.json if nothing can be named for it; else empty
-    std::string where = {}; ///< with a code: names of the columns concerned
-    std::string recording = {}; ///< the one of several that it is about; empty: all
+    std::string code = {};  ///< as in `refusals` of diagnosis.json if it refuses the recording; else empty
+    std::string where = {}; ///< with a code: names of the affected columns
+    std::string recording = {}; ///< the affected one of several recordings; empty: all
 
     /// Returns the sentence after the recording's name.
     std::string words() const { return recording.empty() ? text : recording + ": " + text; }
@@ -56,20 +56,21 @@ struct ValueOfRecording {
 struct Finding {
     std::string effect, where, detail;
     std::vector<FoundParameter> parameters; ///< the main one first
-    double confidence = 0;                  ///< calibrated probability that this cause at this place is there
-    Eigen::Index output = 0;                ///< on which its effect is largest
+    double confidence = 0;   ///< calibrated probability that this cause is present at this place
+    Eigen::Index output = 0; ///< on which its effect is largest
     /// of the low-frequency error of this output, without and with the effect
     double rms_before = 0, rms_after = 0;
     Eigen::VectorXd share; ///< T: contribution to this output
-    Eigen::VectorXd rest;  ///< T: residual of this output, all causes of the same fit taken off
+    Eigen::VectorXd rest;  ///< T: residual of this output after all causes of the same fit
     std::string evidence;
     std::vector<OtherCause> indistinguishable, alternatives;
     std::string confirm;
     double margin_to_nothing = 0, margin_to_others = 0; ///< log-odds behind the confidence
-    /// With several recordings: the main parameter in each, or nothing; its standard deviation between them.
+    /// With several recordings: the main parameter in each, if fitted, and its standard deviation between
+    /// them.
     std::vector<ValueOfRecording> by_recording = {};
     double spread = 0;
-    std::string only_in = {}; ///< the recording that alone has this cause; empty: all have it
+    std::string only_in = {}; ///< the only recording with this cause; empty: all have it
 };
 
 /// A nuisance parameter with its estimate. It is not a finding.
@@ -101,29 +102,30 @@ struct Diagnosis {
     std::vector<std::string> torque_units; ///< of the causes' contributions to the outputs: N·m or N
     std::vector<Suspicion> suspicions;
     std::string scope = "the whole recording"; ///< rows that were diagnosed
-    /// On the held-out time, or over the whole recording without one; of the samples as measured.
+    /// Errors of the samples as measured, on the held-out time, or over the whole recording if there is none.
     ErrorMeasure nominal, extended;
     ErrorMeasure causes;        ///< of the causes found, also where plain least squares replaces them
     ErrorMeasure least_squares; ///< of plain least squares for each output (`textbook_fit`)
     /// 5 x m: plain least squares of the moving rows of the whole recording (`fit_moving_rows`)
     Eigen::MatrixXd textbook;
-    /// Per output: plain least squares is the extended model, because the causes found err more.
+    /// Per output: plain least squares is the extended model, because its error is smaller than that of the
+    /// causes.
     std::vector<bool> by_least_squares;
-    Eigen::VectorXd standing_share; ///< m: share of the rows of these errors that `moving_nrmse` excludes
+    Eigen::VectorXd standing_share; ///< m: share of these rows that `moving_nrmse` excludes
     double heldout_from_s = 0, heldout_to_s = 0;
-    std::vector<std::string> recordings; ///< names of several that were fitted as one question; else empty
+    std::vector<std::string> recordings; ///< names of several that were fitted together; else empty
     std::vector<Finding> findings;       ///< in descending order of gain
     std::vector<NuisanceEstimate> nuisance_estimates;
     std::vector<Unexplained> unexplained;
 };
 
-/// Whether nothing is named, because of the set-up or because the recording cannot answer.
+/// Returns whether no cause is named, because the set-up is wrong or the recording is unsuitable.
 inline bool refused(const Diagnosis& diagnosis) {
     return std::ranges::any_of(diagnosis.suspicions,
                                [](const Suspicion& suspicion) { return !suspicion.code.empty(); });
 }
 
-/// Returns whether a part of the recording fitted nothing, so that the errors are those of that part.
+/// Returns whether part of the recording was held out, so that the errors are measured there.
 inline bool has_held_out(const Diagnosis& diagnosis) {
     return diagnosis.heldout_to_s > diagnosis.heldout_from_s;
 }
@@ -131,12 +133,11 @@ inline bool has_held_out(const Diagnosis& diagnosis) {
 struct DiagnosisOptions {
     OutputKind outputs = OutputKind::joint_torque;
     std::vector<double> torque_constants; ///< N·m/A per joint; empty: unknown, each joint has its own gain
-    /// Measured unit per N·m of currents, as for several recordings; empty: from the constants or the
-    /// recording.
+    /// Measured unit per N·m of currents, from the fit of several recordings; empty: from the constants or
+    /// the recording.
     Eigen::VectorXd torque_gains = {};
     bool measure = true; ///< whether to measure the held-out error, which doubles the run time
-    /// Recordings that are joined in the diagnosed one: the set-up of each is checked; empty: it is a single
-    /// one.
+    /// Recordings that are joined in the diagnosed one, whose set-ups are checked; empty: it is a single one.
     std::span<const Recording> parts = {};
     bool check_setup = true; ///< false: continues even if units, clock, columns or signs look wrong
     std::function<void(int round)> progress = {};
@@ -153,13 +154,13 @@ struct DiagnosisWork {
     RawSamples samples;                    ///< of the recording; without rows: errors are those of `measured`
     Eigen::MatrixXd rest; ///< T x m: residual after the fitted effects and the contacts, as `measured`
     Diagnosis diagnosis;
-    /// T x m: outputs of the extended model of the whole recording, as `measured`; plain least squares beside
-    /// the body of the robot's file where that is better
+    /// T x m: outputs of the extended model of the whole recording, as `measured`; at outputs where plain
+    /// least squares is better, those of plain least squares
     Eigen::MatrixXd extended = {};
     bool gains_known = true; ///< torques were measured, or the torque constants of currents are given
 };
 
-/// Returns whether the recording could answer: there are effects to choose from, and a model can be made.
+/// Returns whether the recording is suitable: effects were fitted, and an extended model can be made.
 inline bool answered(const DiagnosisWork& work) {
     return work.signals != nullptr && !work.fitted_effects.candidates.empty();
 }

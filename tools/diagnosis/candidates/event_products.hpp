@@ -12,8 +12,8 @@ namespace dfdyn::tools {
 
 inline constexpr double events_apart_s = 2; ///< windows closer than this belong to the same event
 
-/// Returns the minimum log-evidence required of an event: three times that of the fourth-best event. Empty if
-/// fewer than four events exist.
+/// Returns the minimum log-evidence required of an event: three times the log-evidence of the fourth-best
+/// event. Empty if fewer than four events exist.
 std::optional<double> noise_event_threshold(const std::vector<EventWindow>& events);
 
 /// Returns, per output, the ratio of a series' energy after weighting by the noise to its energy before.

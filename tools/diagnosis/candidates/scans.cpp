@@ -30,8 +30,8 @@ std::vector<bool> near_reversals(const Eigen::VectorXd& velocity, double rate_hz
     return near;
 }
 
-/// Replaces each run of rows that are `away` by a straight line. The line connects the mean of the `beside`
-/// rows before it with the mean of the `beside` rows after it. At the ends of the series it is constant.
+/// Replaces each run of rows that are `away` by a straight line. The line connects the means of the `beside`
+/// rows before and after it. At the ends of the series it is constant.
 void bridge(Eigen::VectorXd& series, const std::vector<bool>& away, Eigen::Index beside) {
     const auto is_away = [&](Eigen::Index row) { return away[static_cast<std::size_t>(row)]; };
     for (Eigen::Index first = 0; first < series.size(); ++first) {

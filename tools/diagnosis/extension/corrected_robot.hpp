@@ -8,7 +8,8 @@ namespace dfdyn::tools {
 
 /// Returns the robot that the diagnosis found: masses, centres of mass, moments of inertia, gravity and
 /// offsets of the encoders; viscous and dry friction and the rotor's inertia of each joint. `left_out` names
-/// what a robot file cannot hold, and links whose parameters no body can have; these keep those of the file.
+/// what a robot file cannot contain, and links with physically impossible parameters, which keep those of the
+/// file.
 RobotExport corrected_robot(const ModelExtension& extension);
 
 } // namespace dfdyn::tools

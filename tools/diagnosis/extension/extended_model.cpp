@@ -32,9 +32,9 @@ using Eigen::VectorXd;
 
 constexpr double window_s = 0.2;
 constexpr int most_lags = 100;
-/// the poles that are compared
+/// poles for comparison
 constexpr std::array filter_poles{0.0, 0.3, 0.5, 0.65, 0.75, 0.83, 0.9, 0.95};
-constexpr std::size_t rows_for_filters = 1500; ///< the number of rows for the comparison of filters
+constexpr std::size_t rows_for_filters = 1500; ///< for the comparison of filters
 
 /// Velocity and acceleration as weighted means of first and second differences, with one pole each.
 InputModel filters(double velocity_pole, double acceleration_pole, const TrainingData& data) {

@@ -31,7 +31,7 @@ void add_nuisance(ModelExtension& extension, const DiagnosisWork& work) {
     }
 }
 
-/// Replaces the columns of an output by those of plain least squares, beside the extension's rigid body.
+/// Replaces the columns of an output by those of plain least squares, in addition to the rigid body.
 void take_least_squares(ModelExtension& extension, const DiagnosisWork& work, Eigen::Index output,
                         const Eigen::VectorXd& coefficients) {
     constexpr double least_gain = 0.1;
@@ -70,7 +70,7 @@ void take_least_squares(ModelExtension& extension, const DiagnosisWork& work, Ei
     add(work.signals->wrench() ? effect_kinds::ft_bias : effect_kinds::torque_offset, coefficients[4]);
 }
 
-/// Takes plain least squares at all outputs where it is the extended model.
+/// Uses plain least squares at all outputs where it is the extended model.
 void take_least_squares(ModelExtension& extension, const DiagnosisWork& work) {
     const std::vector<bool>& chosen = work.diagnosis.by_least_squares;
     if (std::ranges::find(chosen, true) == chosen.end()) {

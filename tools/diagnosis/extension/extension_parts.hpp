@@ -20,8 +20,8 @@ struct ChosenEffect {
     Eigen::Index number() const; ///< index of `jointK`, `linkK`, …, from 0
 };
 
-/// Returns a column of `kind` on the effect's output. The uncertainty of the direction of motion is that of
-/// the diagnosis.
+/// Returns a column of `kind` on the effect's output, with the diagnosis' uncertainty of the direction of
+/// motion.
 EffectModel on_joint(const ChosenEffect& chosen, const EffectKind& kind);
 
 /// Adds a column, or adds `value` to an equal column. Coefficients continue to adapt: their prior standard

@@ -60,7 +60,7 @@ ordered_json to_json(const NuisanceEstimate& nuisance) {
     return entry;
 }
 
-/// Adds what several recordings say about a finding.
+/// Adds the values of a finding in several recordings.
 void add_recordings(ordered_json& json, const Finding& finding) {
     if (!finding.by_recording.empty()) {
         json["spread"] = finding.spread;
@@ -93,7 +93,7 @@ ordered_json to_json(const Finding& finding, const std::string& output) {
     return json;
 }
 
-/// The errors of plain least squares, and its coefficients for each output.
+/// Returns the errors of plain least squares, and its coefficients for each output.
 ordered_json textbook_json(const Diagnosis& diagnosis) {
     ordered_json json = to_json(diagnosis.least_squares);
     ordered_json coefficients = ordered_json::array();

@@ -7,7 +7,7 @@
 
 namespace dfdyn::tools {
 
-/// Schema `dfdyn.diagnosis/1`.
+/// Returns the content of diagnosis.json, schema `dfdyn.diagnosis/1`.
 nlohmann::ordered_json diagnosis_json(const Diagnosis& diagnosis);
 
 } // namespace dfdyn::tools

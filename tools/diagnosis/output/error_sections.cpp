@@ -18,7 +18,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double shown_s = 20; ///< of the recording: longer curves would be illegible
+constexpr double shown_s = 20; ///< longer curves would be illegible
 constexpr Eigen::Index most_points = 700;
 
 /// Converts torques to the units of the outputs.
@@ -26,7 +26,7 @@ Eigen::MatrixXd in_output_units(const DiagnosisWork& work, const Eigen::MatrixXd
     return torques * work.torque_gains.asDiagonal();
 }
 
-/// Rows of the plots: from the start of the held-out time, or of the recording.
+/// Returns the rows of the plots, from the start of the held-out time, or of the recording.
 std::vector<Eigen::Index> shown_rows(const DiagnosisWork& work) {
     const Eigen::VectorXd& time = work.signals->measured.time_s;
     const double from = std::max(work.diagnosis.heldout_from_s, time[0]);
@@ -69,7 +69,7 @@ ChartCurve spectrum(const SpectralRows& rows, std::string name, const Eigen::Mat
     return curve;
 }
 
-/// Level of the upper half of the band, where the motion has no energy: the level of white noise.
+/// Level of white noise: the median over the upper half of the band, where the motion has no energy.
 ChartCurve white_level(const ChartCurve& rest) {
     const auto half = static_cast<std::ptrdiff_t>(rest.y.size() / 2);
     const double level = median({rest.y.begin() + half, rest.y.end()});

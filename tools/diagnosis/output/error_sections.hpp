@@ -11,7 +11,7 @@
 
 namespace dfdyn::tools {
 
-/// Outputs on the clock of the diagnosis, in their units. T x m each.
+/// Outputs at the rows of the diagnosis, in their units, T x m each.
 struct ComparedOutputs {
     Eigen::MatrixXd measured;
     Eigen::MatrixXd simulated; ///< by the rigid body of the robot's file
@@ -25,7 +25,7 @@ ComparedOutputs compared_outputs(const DiagnosisWork& work);
 void write_comparison_csv(std::ostream& out, const DiagnosisWork& work);
 
 /// Measured, simulated and extended outputs over a time window, and the errors of both models, per output.
-/// `full_data`: name of the file from `write_comparison_csv` beside the page; empty: none.
+/// `full_data`: name of the file from `write_comparison_csv` in the page's folder; empty: none.
 PageSection comparison_section(const DiagnosisWork& work, const std::string& full_data);
 
 /// Spectra of the errors, whiteness of the residual, and its remaining dependences.

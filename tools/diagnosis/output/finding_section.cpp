@@ -36,8 +36,8 @@ std::vector<double> thinned(const Eigen::VectorXd& values, Eigen::Index most) {
     return result;
 }
 
-/// Returns the effect as a curve over its abscissa: over time with the gaps of the recording, otherwise means
-/// of its contribution in fine bins.
+/// Returns the effect as a curve over its abscissa: over time with the recording's gaps, otherwise as the
+/// mean contribution in fine bins.
 XyLine fitted_curve(const PlotAbscissa& over, const MeasuredMotion& measured, const Finding& finding) {
     const std::string name = "named effect";
     if (over.time) {
@@ -85,7 +85,7 @@ ReportTable parameter_table(const Finding& finding) {
     return table;
 }
 
-/// The main parameter in each of several recordings.
+/// Returns the main parameter in each of several recordings.
 ReportTable recordings_table(const Finding& finding) {
     const std::string unit = finding.parameters.front().unit;
     ReportTable table{finding.parameters.front().name + " in each recording",

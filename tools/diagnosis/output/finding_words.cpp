@@ -56,8 +56,8 @@ std::string main_parameter_words(const Finding& finding) {
         return "";
     }
     const bool any_change = measured->name.starts_with("delta_") && measured->low <= 0 && measured->high >= 0;
-    // of the components of a vector, or of both directions, the one with the smallest interval; likewise of
-    // all errors of a link, if the first may be 0
+    // chooses the component of a vector, or the direction, with the smallest relative interval; for a link
+    // error whose first parameter may be 0, any of its parameters
     const auto known = [&](const FoundParameter& parameter) {
         const double reach = parameter.high - parameter.low;
         return reach > 0 && (any_change || are_parts_of_one(parameter.name, measured->name))

@@ -22,10 +22,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double least_evidence = 8; ///< of a hypothesis
+constexpr double least_evidence = 8; ///< minimum log-evidence of a hypothesis
 
-/// Expected spread of a term between recordings: part of the size of a term of the same joint. Those of
-/// friction are the ones of single recordings (`textbook_findings`).
+/// Expected spread of a term between recordings, as a share `part` of the term `of` of the same joint. For
+/// friction these are the values of `textbook_findings`.
 struct TermSpread {
     TextbookTerm of;
     double part;
@@ -45,7 +45,7 @@ TermSpread term_spread(TextbookTerm term) {
     return {term, 0.15};
 }
 
-/// Least expected spread of a term, SI units. `joint_inertia`: mean inertia of the joint.
+/// Minimum expected spread of a term, SI units. `joint_inertia`: mean inertia of the joint.
 double least_spread(TextbookTerm term, double joint_inertia) {
     constexpr double gain_spread = 0.01, inertia_part = 0.1, least = 1e-3;
     switch (term) {
@@ -61,7 +61,7 @@ double least_spread(TextbookTerm term, double joint_inertia) {
     return least;
 }
 
-/// Sets the prior of the terms of a joint. Groups of spreads: 0 has the links, 1 to 5 the terms.
+/// Sets the prior of the terms of a joint. Groups of spreads: 0 for the links, 1 to 5 for the terms.
 void set_terms(PooledPrior& prior, const DiagnosisSignals& signals, Index joint) {
     const double inertia = signals.joint_inertia.col(joint).mean();
     for (Index term = 0; term < terms_of_joint; ++term) {
@@ -79,7 +79,7 @@ void set_terms(PooledPrior& prior, const DiagnosisSignals& signals, Index joint)
 
 /// Returns the prior of an arm whose links may differ as in `fit_arm`, with unknown gains.
 PooledPrior arm_prior(const DiagnosisSignals& signals, std::size_t recordings) {
-    // of the links' deviations: what model errors look like in a recording
+    // spread between recordings that model errors cause, as a share of the links' deviations
     constexpr double link_spread = 0.3;
     const Index size = first_term(signals, signals.outputs());
     const VectorXd links = link_deviations(signals);
@@ -98,7 +98,7 @@ PooledPrior arm_prior(const DiagnosisSignals& signals, std::size_t recordings) {
     return prior;
 }
 
-/// Makes those gains known that a fit with unknown ones does not contradict.
+/// Gives a gain the prior 1 ± `known_gain_deviation` unless the fit with unknown gains contradicts it.
 void set_known_gains(PooledPrior& prior, const DiagnosisSignals& signals, const PooledFit& free) {
     for (Index joint = 0; joint < signals.outputs(); ++joint) {
         const Index at = first_term(signals, joint);
@@ -109,13 +109,14 @@ void set_known_gains(PooledPrior& prior, const DiagnosisSignals& signals, const 
     }
 }
 
-/// A load at the tip: ten inertial parameters there, and what they are in the last body's frame.
+/// A load at the tip: the prior of its ten inertial parameters, and their transform to the last body's frame.
 struct LoadModel {
     Eigen::Matrix<double, 10, 10> to_body; ///< from parameters at the tip
-    Eigen::Matrix<double, 10, 1> variance; ///< of the parameters at the tip, before the recordings
+    Eigen::Matrix<double, 10, 1> variance; ///< prior variance of the parameters at the tip
 
     explicit LoadModel(const DiagnosisSignals& signals) {
-        constexpr double mass_part = 0.2, reach_m = 0.1; // of the arm's mass, and from the tip
+        constexpr double mass_part = 0.2,
+                         reach_m = 0.1; // standard deviations: share of the arm's mass, distance from the tip
         const VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
         const double mass = mass_part * nominal(Eigen::seqN(0, nominal.size() / 10, 10)).sum();
         variance << 1, Eigen::Vector3d::Constant(reach_m * reach_m),
@@ -130,7 +131,7 @@ struct LoadModel {
     MatrixXd covariance() const { return to_body * variance.asDiagonal() * to_body.transpose(); }
 };
 
-/// Chooses hypotheses by evidence, one after the other.
+/// Greedy forward selection of hypotheses by their evidence, followed by one backward pass.
 class HypothesisSearch {
   public:
     HypothesisSearch(const DiagnosisSignals& signals, const std::vector<RecordingInformation>& recordings,
@@ -170,7 +171,7 @@ class HypothesisSearch {
   private:
     Index bodies() const { return signals_.regressor.cols() / 10; }
 
-    /// Drops hypotheses that those accepted after them explain, and weighs the others again.
+    /// Removes hypotheses that later ones explain, and computes the log-evidence of the others again.
     void drop_explained() {
         for (std::size_t i = 0; i < accepted_.size();) {
             PooledPrior without = prior_;
@@ -193,9 +194,9 @@ class HypothesisSearch {
         });
     }
 
-    /// Adds what a hypothesis allows to a prior; `sign` -1: takes it away.
+    /// Adds a hypothesis' variance to a prior; `sign` -1: subtracts it.
     void accept(PooledPrior& prior, const ArmHypothesis& one, double sign = 1) const {
-        constexpr double wider = 4; // standard deviation of a wrong link, over that of the others
+        constexpr double wider = 4; // ratio of a wrong link's standard deviation to that of the others
         const Index first = 10 * one.body.value_or(bodies() - 1);
         MatrixXd& covariance = one.recording ? prior.changed[*one.recording] : prior.covariance;
         if (one.body) {
@@ -217,7 +218,7 @@ class HypothesisSearch {
         return all;
     }
 
-    /// Returns every possible hypothesis with its evidence.
+    /// Returns every hypothesis that is not accepted and physically possible, with its log-evidence.
     std::vector<ArmHypothesis> tried() const {
         std::vector<ArmHypothesis> possible;
         for (ArmHypothesis& one : all_hypotheses()) {
@@ -235,7 +236,7 @@ class HypothesisSearch {
         return possible;
     }
 
-    /// Returns whether these parameters at the tip are of a load: a mass within reach.
+    /// Returns whether these parameters at the tip describe a load: a positive mass, near enough to the tip.
     static bool is_load(const Eigen::Matrix<double, 10, 1>& parameters) {
         return parameters[0] > 0 && parameters.segment<3>(1).norm() <= farthest_payload * parameters[0];
     }
@@ -256,8 +257,8 @@ class HypothesisSearch {
         return best;
     }
 
-    /// Returns the part of what differs at the last body that is a load: not spread, and no error of the
-    /// link. `prior` has the hypothesis, and `fit` is its fit.
+    /// Returns the load's share of the last body's parameters; spread and errors of the link are the rest.
+    /// `prior` includes the hypothesis, and `fit` is its fit.
     RecordingLoad load_of(const ArmHypothesis& one, const PooledPrior& prior, const PooledFit& fit) const {
         const Index last = 10 * (bodies() - 1);
         const Eigen::Matrix<double, 10, 10> part = load_.variance.asDiagonal() * load_.to_body.transpose();

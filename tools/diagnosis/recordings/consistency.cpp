@@ -22,10 +22,10 @@ struct Size {
     double factor = 1, variance = 0;
 };
 
-/// Returns the size of a finding in each recording that shows it.
+/// Returns the size of a finding in each recording with at least 1 % of its squares.
 std::vector<Size> sizes_of(const DiagnosisWork& work, const Finding& finding,
                            const std::vector<double>& ends_s) {
-    constexpr double least_share = 0.01; // of the squares of all recordings
+    constexpr double least_share = 0.01; // of the contribution's squares in all recordings
     const MeasuredMotion& measured = work.signals->measured;
     const VectorXd weight = row_weight(*work.signals, finding.output);
     const double all = weight.dot(finding.share.cwiseAbs2());

@@ -28,7 +28,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Turns the terms of joints into findings, whose contributions are those in the joined recording.
+/// Makes findings of the joints' terms in the pooled fit, with their contributions to the joined recording.
 class TermNamer {
   public:
     TermNamer(DiagnosisWork& work, const SeveralRecordings& several)
@@ -39,7 +39,7 @@ class TermNamer {
     bool everywhere() const { return everywhere_; }
     const Gains& gains() const { return gains_; }
 
-    /// Replaces or completes the findings at a joint.
+    /// Replaces the findings at a joint (friction everywhere), or adds the pooled values to them.
     void name_terms(std::size_t joint) {
         const std::string where = numbered("joint", joint);
         std::vector<Finding> better;
@@ -82,7 +82,7 @@ class TermNamer {
         return textbook_columns(signals_, signals_.nominal.col(joint), joint);
     }
 
-    /// Returns what the pooled values leave of the joined recording's torques.
+    /// Returns the residual of the joined recording's torques with the pooled values.
     MatrixXd rest_of_pooled() const {
         MatrixXd rest = work_.measured - signals_.nominal;
         for (Index body = 0; body < signals_.regressor.cols() / 10; ++body) {
@@ -107,7 +107,7 @@ class TermNamer {
         if (signals_.hardly_moves(joint) || (effect.textbook != TextbookTerm::offset && value <= 0)) {
             return;
         }
-        constexpr double clear = 3; // standard deviations of a value that is not zero
+        constexpr double clear = 3; // standard deviations by which a value differs significantly from zero
         const ParameterKind& kind = effect.parameters.front();
         Finding finding;
         finding.effect = effect.name;
@@ -134,7 +134,7 @@ class TermNamer {
         }
     }
 
-    /// Returns the values of an unknown in each recording.
+    /// Returns the values of an unknown in the pooled recordings.
     std::vector<ValueOfRecording> values_of(Index at) const {
         std::vector<ValueOfRecording> values;
         for (std::size_t r = 0; r < several_.pooled.size(); ++r) {
@@ -145,8 +145,8 @@ class TermNamer {
         return values;
     }
 
-    /// Gives a finding of the joined recording the value of all recordings, unless another cause of its
-    /// output, which the pooled model does not have, makes that wrong.
+    /// Gives a finding of the joined recording the pooled value, unless its output has a likely cause that
+    /// the pooled model does not contain.
     void complete(Finding& old, const Finding& pooled) {
         const bool other_cause = std::ranges::any_of(findings(), [&](const Finding& one) {
             return one.output == old.output && one.confidence > unlikely && !has_textbook_term(one.effect);
@@ -167,8 +167,7 @@ class TermNamer {
     Gains gains_;
 };
 
-/// Adds which recordings are not in the joined one, whose steps of time are those of most rows, or not in the
-/// fit.
+/// Adds a suspicion for each recording without rows in the joined one, or without a part in the fit.
 void add_missing(Diagnosis& diagnosis, const Eigen::VectorXd& time_s, const SeveralRecordings& several,
                  const std::vector<double>& ends_s) {
     Index before = 0;

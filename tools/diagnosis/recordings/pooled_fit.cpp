@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Weight of the expected spread. With two recordings it decides, with six hardly any more.
+/// Weight of the expected spread, in recordings: with two it dominates, with six it has little influence.
 constexpr double prior_recordings = 3;
 
 using Factor = Eigen::LLT<MatrixXd>;
@@ -25,8 +25,8 @@ double log_determinant(const Factor& factor) { return 2 * factor.matrixLLT().dia
 
 /// Difference d of a recording from the common value c.
 struct Difference {
-    Factor given_common; ///< of the precision of d, given c
-    MatrixXd gain;       ///< p x p: derivative of the mean of d by c, negative
+    Factor given_common; ///< factor of the precision of d given c
+    MatrixXd gain;       ///< p x p: minus the derivative of the mean of d with respect to c
 };
 
 class RandomEffects {
@@ -42,7 +42,7 @@ class RandomEffects {
     PooledFit fit() {
         constexpr int most_iterations = 60;
         constexpr double settled = 1e-3;
-        update_common(); // the expected spread depends on the value
+        update_common(); // a first value, on which the expected spread depends
         for (int iteration = 0; iteration < most_iterations; ++iteration) {
             update_common();
             const VectorXd before = fit_.ratio;
@@ -116,7 +116,7 @@ class RandomEffects {
             for (Index k = 0; k < size(); ++k) {
                 const double changed = prior_.changed.empty() ? 0 : prior_.changed[r](k, k);
                 if (changed > 0) {
-                    continue; // what changes is no spread
+                    continue; // an allowed change, such as a load, is no spread
                 }
                 const double variance = inverse(k, k) + by_common.row(k).dot(difference.gain.row(k));
                 const Index group = prior_.group[static_cast<std::size_t>(k)];

@@ -7,23 +7,23 @@
 
 namespace dfdyn::tools {
 
-/// What one recording tells about p parameters of a linear model: the normal equations, in units of its own
-/// noise, so that the inverse of `information` is the covariance of its estimate.
+/// Normal equations of one recording for p parameters of a linear model, in units of its own noise: the
+/// inverse of `information` is the covariance of its estimate.
 struct RecordingInformation {
     Eigen::MatrixXd information; ///< p x p
     Eigen::VectorXd moment;      ///< p
 };
 
-/// What is known of p parameters before the recordings.
+/// Prior of p parameters, before the recordings.
 struct PooledPrior {
-    Eigen::MatrixXd covariance; ///< p x p, of the value that is common to all recordings, whose mean is 0
-    /// p: expected standard deviation between recordings: part of the size of the parameter `spread_of`, and
-    /// a least one.
+    Eigen::MatrixXd covariance; ///< p x p, of the common value, whose prior mean is 0
+    /// p: expected standard deviation between recordings, as a share of the parameter `spread_of`; and its
+    /// minimum.
     Eigen::VectorXd relative_spread, least_spread;
     std::vector<Eigen::Index> spread_of; ///< p: number of a parameter
-    /// p: parameters of one group have the same ratio of their spread to the expected one.
+    /// p: group number; parameters of a group have the same ratio of spread to expected spread.
     std::vector<Eigen::Index> group;
-    /// p x p per recording: covariance of what may differ in it besides the spread; empty: nothing.
+    /// p x p per recording: covariance of its differences in addition to the spread; empty: none.
     std::vector<Eigen::MatrixXd> changed;
 };
 
@@ -32,8 +32,8 @@ struct PooledFit {
     Eigen::VectorXd value;                   ///< p: common to the recordings
     Eigen::MatrixXd covariance;              ///< p x p, of the common value
     Eigen::VectorXd spread;                  ///< p: standard deviation between recordings
-    Eigen::VectorXd ratio;                   ///< per group: spread over the expected one
-    std::vector<Eigen::VectorXd> difference; ///< p per recording: its own value less the common one
+    Eigen::VectorXd ratio;                   ///< per group: spread divided by the expected spread
+    std::vector<Eigen::VectorXd> difference; ///< p per recording: its own value minus the common one
     std::vector<Eigen::MatrixXd> difference_covariance; ///< p x p per recording
     std::vector<Eigen::VectorXd> own_deviation; ///< p per recording: standard deviation of its own value
     double evidence = 0; ///< log-evidence, up to a constant that depends on the recordings alone

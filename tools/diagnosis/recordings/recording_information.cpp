@@ -21,10 +21,10 @@ using Eigen::VectorXd;
 struct JointRows {
     std::vector<Index> unknowns;
     MatrixXd columns;
-    VectorXd target, weight, robust; ///< `robust`: the weight, less for large residuals
+    VectorXd target, weight, robust; ///< `robust`: the weight, reduced for large residuals
     double variance = 1, correlated = 1;
 
-    /// Takes noise and weights from what the values leave.
+    /// Estimates the noise and the robust weights from the residual of these values.
     void take_residual(const VectorXd& values, double rate_hz) {
         constexpr double far = 3;
         const VectorXd residual = target - columns * values(unknowns);
@@ -37,7 +37,7 @@ struct JointRows {
     }
 };
 
-/// Returns the rows of a joint. Without a weight if it hardly moves.
+/// Returns the rows of a joint, with weight 0 if it hardly moves.
 JointRows rows_of(const DiagnosisSignals& signals, const MatrixXd& measured, const MatrixXd& terms,
                   Index joint) {
     JointRows rows;
@@ -81,7 +81,7 @@ double correlated_rows(const VectorXd& residual, const VectorXd& weight, double 
 
 RecordingInformation information_of(const DiagnosisSignals& signals, const MatrixXd& measured,
                                     const std::vector<MatrixXd>& terms) {
-    constexpr int rounds = 4; // the noise hardly changes any more
+    constexpr int rounds = 4; // the noise estimate has converged
     const Index size = first_term(signals, signals.outputs());
     std::vector<JointRows> joints;
     for (Index joint = 0; joint < signals.outputs(); ++joint) {

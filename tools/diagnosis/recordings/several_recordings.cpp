@@ -29,7 +29,7 @@ std::optional<DiagnosisSignals> signals_of_recording(const Robot& robot, OutputK
     }
 }
 
-/// Returns what a recording tells. `gains`: measured unit per N·m.
+/// Returns the normal equations of a recording. `gains`: measured unit per N·m.
 RecordingInformation information_with(const DiagnosisSignals& signals, const VectorXd& gains) {
     const MatrixXd measured = signals.measured.outputs * gains.cwiseInverse().asDiagonal();
     std::vector<MatrixXd> terms;
@@ -39,7 +39,7 @@ RecordingInformation information_with(const DiagnosisSignals& signals, const Vec
     return information_of(signals, measured, terms);
 }
 
-/// Returns the gains that the joined recording shows, which the diagnosis uses.
+/// Returns the gains estimated from the joined recording, which the diagnosis uses.
 VectorXd estimated_gains(const Robot& robot, const std::vector<Recording>& recordings,
                          const DiagnosisOptions& options) {
     return torque_gains(
@@ -59,7 +59,7 @@ std::vector<std::string> names_of(const std::vector<Recording>& recordings) {
     return names;
 }
 
-/// Interpolates a series (T x n) of the rows of a motion at the rows of its recording.
+/// Interpolates `series` (T x n, on the motion's rows) at the rows of the recording.
 MatrixXd at_rows(const Recording& recording, const MeasuredMotion& measured, const MatrixXd& series) {
     const std::span<const double> time(measured.time_s.data(),
                                        static_cast<std::size_t>(measured.time_s.size()));
@@ -111,7 +111,7 @@ void take_loads_off(std::vector<Recording>& recordings, const Robot& robot, cons
                     OutputKind outputs) {
     for (const RecordingLoad& load : several.answer.loads) {
         if (!load.recording) {
-            continue; // it is the same arm in all
+            continue; // all recordings have this load
         }
         Recording& recording = recordings[several.pooled[*load.recording]];
         const DiagnosisSignals signals = diagnosis_signals(robot, outputs, measured_motion(recording));

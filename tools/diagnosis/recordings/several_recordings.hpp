@@ -9,26 +9,26 @@
 
 namespace dfdyn::tools {
 
-/// Several recordings of one arm, and what they say together.
+/// Several recordings of one arm, and their common fit.
 struct SeveralRecordings {
-    std::vector<std::string> names;  ///< of all recordings: of the file, or its path where names are equal
-    std::vector<std::size_t> pooled; ///< of them, those that are in the fit: number of each
-    ArmAnswer answer;                ///< its recordings are those of `pooled`
+    std::vector<std::string> names;  ///< names of all files, or their paths where names are equal
+    std::vector<std::size_t> pooled; ///< indices of the recordings in the fit
+    ArmAnswer answer;                ///< its recordings are those in `pooled`
     Eigen::VectorXd torque_gains;    ///< per output: measured unit per N·m (N)
     double seconds = 0;              ///< duration of all pooled recordings
 
-    /// Returns whether there is an answer: at least two recordings could be read as motion.
+    /// Returns whether there is a fit: at least two recordings have a long enough segment.
     bool answered() const { return pooled.size() > 1; }
 };
 
-/// Fits several recordings at once, each with its own clock, filters and noise. Not answered for fewer than
-/// two recordings and for wrenches. Recordings without a segment that is long enough are left out. Cost: that
-/// of `information_of` per recording and of `ask_recordings`.
+/// Fits several recordings at once, each with its own clock, filters and noise. There is no fit for fewer
+/// than two recordings and for wrenches. Recordings without a segment that is long enough are left out. Cost:
+/// that of `information_of` per recording and of `ask_recordings`.
 SeveralRecordings fit_recordings(const Robot& robot, const std::vector<Recording>& recordings,
                                  const DiagnosisOptions& options, bool loads_differ);
 
-/// Subtracts from the outputs of each recording what a load adds that it alone has, so that the rest is the
-/// same arm in all.
+/// Subtracts the torque of a recording's own load from its outputs, so that all recordings are of the same
+/// arm.
 void take_loads_off(std::vector<Recording>& recordings, const Robot& robot, const SeveralRecordings& several,
                     OutputKind outputs);
 

@@ -28,8 +28,8 @@ bool needs_links_only(const FittedEffects& at, const std::vector<ChosenShape>& e
 }
 
 /// Decides whether the links' masses equal those of the robot's file. The search before assumed uncertain
-/// masses. The prior probability that one link is wrong equals that of all being uncertain; each further link
-/// has the full penalty. The penalty for one cause of many is therefore compensated.
+/// masses. One wrong link and uncertain masses of all links have equal prior probabilities, so that the
+/// penalty of the first link is compensated; each further link has the full penalty.
 void decide_masses(FittedEffects& at, const EffectRegression& regression) {
     at.problem.sums = regression.weighted_sums();
     at.chosen = search_effects(at.problem, at.chosen);

@@ -113,8 +113,8 @@ bool contradict(const EffectFit& fit, const EffectFit& even, const std::vector<I
            far * static_cast<double>(columns.size());
 }
 
-/// Returns a lasting effect on the `inexact` outputs that `values` do not support: its coefficients are
-/// inadmissible, or its evidence is the least and does not pay its price.
+/// Returns a persistent effect on the `inexact` outputs that `values` do not support: its coefficients are
+/// inadmissible, or its log-evidence is the smallest and below its prior penalty.
 std::optional<std::size_t> unsupported(const FittedEffects& at) {
     std::optional<std::size_t> result;
     double least = 0;

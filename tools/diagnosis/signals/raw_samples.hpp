@@ -9,7 +9,7 @@
 
 namespace dfdyn::tools {
 
-/// The outputs of a recording as measured, without any filter, and where their rows are among those of the
+/// The outputs of a recording as measured, without any filter, and their positions among the rows of the
 /// motion, which may have a lower rate.
 struct RawSamples {
     Eigen::MatrixXd outputs;        ///< S x m, in the recording's units

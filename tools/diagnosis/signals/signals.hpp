@@ -23,8 +23,8 @@ struct DiagnosisSignals {
     std::size_t joints() const { return robot.joints.size(); }
     Eigen::Index outputs() const { return nominal.cols(); }
     bool wrench() const { return kind == OutputKind::wrench; }
-    /// Returns whether a joint travels less than 0.05 rad (5 mm), so that the torque that it shows is
-    /// whatever its friction holds.
+    /// Returns whether a joint travels less than 0.05 rad (5 mm), so that static friction determines its
+    /// torque.
     bool hardly_moves(std::size_t joint) const;
     /// Returns the direction of motion (T) of a joint, from -1 to 1; nearly 0 where it is uncertain.
     Eigen::VectorXd direction(Eigen::Index joint) const;

@@ -64,9 +64,9 @@ Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen:
                                const Eigen::VectorXd& spent);
 
 /// Returns the local noise scale (bins x frames): the ratio of the noise in each frame and frequency band to
-/// its spectrum, 1 on average. The scale is that of Student's t-distribution with few degrees of freedom,
-/// which limits the influence of short disturbances. Rows that are not `filled` and bins that are zero count
-/// with the average scale.
+/// its spectrum, 1 on average. It is the scale of Student's t-distribution with few degrees of freedom, which
+/// limits the influence of short disturbances. Rows that are not `filled` and bins that are zero have the
+/// average scale.
 Eigen::MatrixXd local_noise_scale(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                                   const Eigen::VectorXd& spectrum);
 

@@ -18,10 +18,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Time between independent samples of the residual. Chosen with the thirteen recordings of
-/// tests/data/ur5_kufieta: 148 of 154 intervals of friction then hold the mean of the recordings.
+/// tests/data/ur5_kufieta: 148 of 154 intervals of friction then contain the mean of the recordings.
 constexpr double correlation_s = 0.1;
 
-/// The normal equations of all joints. Unknown are the links' parameters and then the terms of each joint,
+/// The normal equations of all joints. The unknowns are the links' parameters, then the terms of each joint,
 /// all as differences from the robot's file.
 class ArmEquations {
   public:
@@ -41,7 +41,7 @@ class ArmEquations {
     Index joints() const { return target_.cols(); }
     Index first_term(Index joint) const { return dfdyn::tools::first_term(signals_, joint); }
 
-    /// Solves with these deviations of the gains (n), and takes the noise from what is left.
+    /// Solves with these prior deviations of the gains (n), then estimates the noise from the residual.
     void solve(const VectorXd& gain_deviation) {
         const Index size = first_term(joints());
         MatrixXd system = MatrixXd::Zero(size, size);
@@ -72,7 +72,7 @@ class ArmEquations {
     MatrixXd covariance(Index joint) const {
         return covariance_.block(first_term(joint), first_term(joint), terms_of_joint, terms_of_joint);
     }
-    const MatrixXd& rest() const { return rest_; } ///< T x n: what the values leave
+    const MatrixXd& rest() const { return rest_; } ///< T x n: residual
 
   private:
     MatrixXd columns(Index joint) const {
@@ -92,12 +92,12 @@ class ArmEquations {
     VectorXd links_; ///< standard deviations of the links' parameters
     std::vector<VectorXd> weight_, moment_;
     std::vector<MatrixXd> gram_;
-    std::vector<double> variance_; ///< per joint, of what is left
+    std::vector<double> variance_; ///< per joint, of the residual
     VectorXd values_;
     MatrixXd covariance_;
 };
 
-/// Returns the gains' deviations: the given torque constants hold where the data do not contradict them.
+/// Returns the gains' prior deviations: given torque constants are used unless the data contradict them.
 VectorXd gain_deviations(const ArmEquations& free, bool gains_known) {
     VectorXd result = VectorXd::Constant(free.joints(), unknown_deviation);
     for (Index joint = 0; gains_known && joint < free.joints(); ++joint) {
@@ -112,7 +112,7 @@ VectorXd gain_deviations(const ArmEquations& free, bool gains_known) {
 
 ArmFit fit_arm(const DiagnosisSignals& signals, const MatrixXd& measured, std::vector<MovingFit> plain,
                bool gains_known) {
-    constexpr int rounds = 3; // the noise hardly changes any more
+    constexpr int rounds = 3; // the noise estimate has converged
     ArmEquations equations(signals, measured, plain);
     equations.solve(VectorXd::Constant(equations.joints(), unknown_deviation));
     const VectorXd gains = gain_deviations(equations, gains_known);

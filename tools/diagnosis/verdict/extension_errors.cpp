@@ -42,8 +42,8 @@ ErrorMeasure error_measure(const Eigen::MatrixXd& error, const Eigen::MatrixXd& 
     return result;
 }
 
-/// Returns, per output, the samples from `first` on, counted from there, in which static friction does not
-/// determine the torque.
+/// Returns, per output, the samples from `first` on, as indices from there, whose torque is not determined by
+/// static friction.
 std::vector<std::vector<Eigen::Index>> moving_samples(const DiagnosisSignals& signals,
                                                       const RawSamples& samples, Eigen::Index first) {
     std::vector<std::vector<Eigen::Index>> result;
@@ -64,7 +64,7 @@ void take(ErrorMeasure& measure, const ErrorMeasure& other, Eigen::Index output)
     measure.moving_nrmse[output] = other.moving_nrmse[output];
 }
 
-/// Replaces the causes by plain least squares at the outputs where these err less.
+/// Replaces the causes by plain least squares at the outputs where its error is smaller.
 void take_better(Diagnosis& diagnosis) {
     constexpr double tolerance = 1.03;
     std::string names;

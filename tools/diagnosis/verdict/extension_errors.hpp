@@ -6,13 +6,13 @@
 namespace dfdyn::tools {
 
 /// Measures the errors of the samples from row `first` on (less than the number of rows): without and with
-/// the fitted effects, and of plain least squares, fitted before that row (0: on all rows). Sets
-/// `nominal`, `extended`, `least_squares`, `by_least_squares` and `standing_share` of the diagnosis. Where
-/// the effects err 3 % more than plain least squares, `extended` has its errors.
+/// the fitted effects, and of plain least squares, fitted before that row (0: on all rows). Sets `nominal`,
+/// `extended`, `least_squares`, `by_least_squares` and `standing_share` of the diagnosis. Where the error
+/// with the effects is 3 % larger than that of plain least squares, `extended` has the latter.
 void measure_from(DiagnosisWork& work, Eigen::Index first, const FittedEffects& fitted_effects);
 
 /// Measures the errors on the last third, for a model that is chosen and fitted on the first two thirds. Adds
-/// a suspicion if the effects increase the errors. Cost: that of a diagnosis.
+/// a suspicion if the effects increase the errors. Cost: one more diagnosis.
 void measure_on_held_out(DiagnosisWork& work, FitOptions options);
 
 } // namespace dfdyn::tools

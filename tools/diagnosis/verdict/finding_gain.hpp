@@ -5,7 +5,8 @@
 
 namespace dfdyn::tools {
 
-/// Error reduction of findings, as figures and as text. `signals` and `output_names` must outlive it.
+/// Computes the error reduction of findings, as figures and as text. `signals` and `output_names` must
+/// outlive it.
 class Gains {
   public:
     /// `rest`: T x m, the residual after all causes.
@@ -13,7 +14,7 @@ class Gains {
           const std::vector<std::string>& output_names);
 
     /// Measures the gain of a finding that adds `contribution` (T x m): below `gains_below_hz`, or at all
-    /// frequencies if the effect is visible above only. Returns whether the error decreases.
+    /// frequencies if the effect acts only above that. Returns whether the error decreases.
     bool tell(Finding& finding, const Eigen::MatrixXd& contribution) const;
 
   private:

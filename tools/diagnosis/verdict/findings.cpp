@@ -189,7 +189,7 @@ void sort_by_gain(std::vector<Finding>& findings) {
 double calibrated_confidence(const Finding& finding, double duration_s) {
     // Logistic regression on correct and wrong findings in simulated recordings of 50 s and of 200 s:
     // docs/results/diagnosis-panel.md. The margin to the next cause did not improve it. The evidence of model
-    // errors increases with the recording's length like that of a real cause; the time term compensates this.
+    // errors increases with the recording's length as for a real cause; the time term compensates this.
     const double to_nothing = std::log(std::max(finding.margin_to_nothing, 0.1));
     const double time = std::log(std::clamp(duration_s, 50.0, 200.0) / 50);
     const Effect* const effect = find_effect(finding.effect);

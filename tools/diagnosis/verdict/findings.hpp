@@ -12,7 +12,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const FittedEf
                                  const std::vector<StationaryContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names);
 
-/// Confidence of a finding that something contradicts, at most.
+/// Largest confidence of a finding that other evidence contradicts.
 inline constexpr double unlikely = 0.49;
 
 /// Sorts by the ratio of the errors without and with each finding, largest first.
@@ -24,9 +24,9 @@ std::string confirmation(const Finding& finding);
 /// Calibrated probability from the finding's margin, its effect and the recording's length.
 double calibrated_confidence(const Finding& finding, double duration_s);
 
-/// Lowers the confidence of findings below 0.5 that cannot be relied on: at outputs where even the extended
-/// model errs by more than the output's standard deviation, and those that reduce no error by 1 %. Events are
-/// short and exempt from the latter.
+/// Lowers the confidence of unreliable findings below 0.5: at outputs where even the extended model errs by
+/// more than the output's standard deviation, and those that reduce no error by 1 %. Events are short and
+/// exempt from the latter.
 void doubt_useless_findings(Diagnosis& diagnosis);
 
 } // namespace dfdyn::tools

@@ -46,7 +46,7 @@ ShapeParameters parameters_over_shapes(const FittedEffects& fitted_effects, std:
                               fitted_effects.covariance(index));
     const Eigen::Index first = fitted_effects.first_column(index);
     const Eigen::Index count = fitted_effects.coefficients(index).size();
-    // the same by the evidence's weights, to which the other shapes are compared
+    // parameters with the weights of the evidence, for comparison with the other shapes
     const ShapeParameters by_evidence(candidate, own_shape,
                                       fitted_effects.named.coefficients.segment(first, count),
                                       fitted_effects.named.covariance.block(first, first, count, count));

@@ -7,8 +7,8 @@
 
 namespace dfdyn::tools {
 
-// Reasons why a recording with a correct set-up is unsuitable: too little motion, another robot, too short a
-// time. Mistakes in the set-up: tools/setup_check. The most serious reason is the first.
+// Reasons why a recording with a correct set-up is unsuitable: too little motion, another robot, too short.
+// Mistakes in the set-up: tools/setup_check. The most serious reason is the first.
 
 /// Checks the file, before the motion is computed.
 std::vector<Suspicion> suspicions_of_file(const Recording& recording);

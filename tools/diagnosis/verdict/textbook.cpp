@@ -36,8 +36,7 @@ WeightedFit weighted_fit(const MatrixXd& columns, const VectorXd& weight, const 
     return {scale, inverse, scale.asDiagonal() * (inverse * moment)};
 }
 
-/// Returns the sums over blocks of time of error times columns, p x blocks. Blocks without weight are left
-/// out.
+/// Returns the sums of error times columns over blocks of time, p x blocks, without blocks of weight 0.
 MatrixXd sums_of_blocks(const MatrixXd& columns, const VectorXd& weight, const VectorXd& error,
                         const VectorXd& time_s) {
     const double moving_s =
@@ -62,7 +61,8 @@ MatrixXd sums_of_blocks(const MatrixXd& columns, const VectorXd& weight, const V
     return result;
 }
 
-/// Returns the covariance of a fit from the sums of blocks, at least that of white noise.
+/// Returns the covariance of a fit from the sums over blocks; its diagonal is at least the one of white
+/// noise.
 MatrixXd covariance_of(const WeightedFit& fit, const MatrixXd& sums, const VectorXd& weight,
                        const VectorXd& error) {
     const auto blocks = static_cast<double>(sums.cols());
@@ -77,7 +77,7 @@ MatrixXd covariance_of(const WeightedFit& fit, const MatrixXd& sums, const Vecto
     return covariance;
 }
 
-/// Takes into account that the rigid body's factor is near 1, unless the data contradict it.
+/// Applies the prior of the rigid body's factor (near 1), unless the data contradict it.
 void expect_gain_of_one(MovingFit& fit) {
     fit.another_gain = contradicts_known_gain(fit.values[0], fit.covariance(0, 0));
     if (!fit.another_gain) {

@@ -30,7 +30,7 @@ TextbookFit textbook_fit(const DiagnosisSignals& signals, const Eigen::MatrixXd&
 inline constexpr double known_gain_deviation = 0.03;
 
 /// Returns whether data contradict that a factor is 1 ± `known_gain_deviation`: by three deviations. `gain`:
-/// its estimate without that knowledge, with this variance.
+/// its estimate without this prior, with this variance.
 bool contradicts_known_gain(double gain, double variance);
 
 /// Returns the weights (T) of an output's rows (MeasuredMotion::weight).
@@ -44,17 +44,17 @@ struct MovingFit {
     Eigen::MatrixXd columns;    ///< T x 5, in the order of `TextbookTerm`
     Eigen::VectorXd values;     ///< 5
     Eigen::MatrixXd covariance; ///< 5 x 5
-    Eigen::Index blocks = 0;    ///< of time, whose sums show the covariance
-    bool another_gain = false;  ///< the rigid body's factor is known to be near 1, and is not
+    Eigen::Index blocks = 0;    ///< of time, from whose sums the covariance is computed
+    bool another_gain = false;  ///< the data contradict the known factor 1 of the rigid body
 };
 
 /// Fits `measured` (T), with the rigid body's output `rigid` (T) and the rows' weights
 /// (MeasuredMotion::weight). `gain_known`: the rigid body's factor is 1 ± 0.03, unless the data contradict it
-/// by three deviations. Where the other columns contain the rigid body's, the factor is 1.
+/// by three deviations. Where the rigid body's column depends on the others, the factor is 1.
 ///
-/// The covariance is that of the sums over blocks of a second (a twentieth of the time in which the joint
-/// moves, if that is shorter than 20 s; at least 0.25 s), so that it includes noise with a shorter
-/// correlation. Cost: O(25 T).
+/// The covariance is computed from sums over blocks of 1 s, so that it includes noise with a shorter
+/// correlation. A joint that moves for less than 20 s has blocks of a twentieth of that time, at least 0.25
+/// s. Cost: O(25 T).
 MovingFit fit_moving_rows(const DiagnosisSignals& signals, const Eigen::VectorXd& measured,
                           const Eigen::VectorXd& rigid, Eigen::Index output, bool gain_known);
 

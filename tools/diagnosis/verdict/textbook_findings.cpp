@@ -24,14 +24,14 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Relative deviation of a parameter from one recording of an arm to the next. Viscous friction depends on
-/// the lubricant's temperature. Chosen with the thirteen recordings of tests/data/ur5_kufieta.
+/// Relative standard deviation of a parameter between recordings of an arm. Viscous friction depends on the
+/// lubricant's temperature. Chosen with the thirteen recordings of tests/data/ur5_kufieta.
 double between_recordings(TextbookTerm term) {
     return term == TextbookTerm::viscous || term == TextbookTerm::inertia ? 0.15 : 0.05;
 }
 
-/// Returns the finding of a term of a fit. `everywhere`: the fit is that of the arm, which has friction at
-/// every joint; only its size is in question.
+/// Returns the finding of a term of a fit. `everywhere`: a fit of the whole arm, which has friction at every
+/// joint, so that only its size is uncertain.
 Finding finding_of(const DiagnosisWork& work, const Effect& effect, const MovingFit& fit, Index output,
                    bool everywhere) {
     constexpr double price = 8; // least log-evidence of a cause with one coefficient in the panel's search
@@ -81,8 +81,8 @@ std::vector<Finding> findings_at(const DiagnosisWork& work, const MovingFit& fit
     return findings;
 }
 
-/// Adds the findings of plain least squares at a joint. Removes those that they replace, and doubts the
-/// others there.
+/// Adds the findings of plain least squares at a joint. Removes findings of the same effects, and lowers the
+/// confidence of the others there.
 void replace_findings(std::vector<Finding>& findings, std::vector<Finding> better, const std::string& joint,
                       const std::string& actuator, bool another_gain) {
     std::erase_if(findings, [&](const Finding& one) {
@@ -98,7 +98,7 @@ void replace_findings(std::vector<Finding>& findings, std::vector<Finding> bette
     std::ranges::move(better, std::back_inserter(findings));
 }
 
-/// Returns plain least squares of each output. Sets `textbook` of the diagnosis and `extended`.
+/// Fits plain least squares of each output. Sets `textbook` of the diagnosis and `extended`.
 std::vector<MovingFit> fit_outputs(DiagnosisWork& work) {
     const DiagnosisSignals& signals = *work.signals;
     Diagnosis& diagnosis = work.diagnosis;
@@ -118,7 +118,7 @@ std::vector<MovingFit> fit_outputs(DiagnosisWork& work) {
     return fits;
 }
 
-/// Returns what the fits of single outputs leave of the measured ones.
+/// Returns the residual of the fits of single outputs.
 MatrixXd rest_of(const DiagnosisWork& work, const std::vector<MovingFit>& fits) {
     MatrixXd rest = work.measured;
     for (std::size_t output = 0; output < fits.size(); ++output) {

@@ -9,15 +9,14 @@ namespace dfdyn::tools {
 /// no effect is exactly right.
 bool friction_everywhere(const DiagnosisWork& work);
 
-/// Returns the probability that a value with a standard deviation is known to its half.
+/// Returns the probability that the true value is within half of the estimate `value`.
 double probability_of_size(double value, double deviation);
 
-/// Names what least squares finds on the whole recording: at each joint where plain least squares is the
-/// extended model (`fit_moving_rows`), or, where half of the joints have real gears, at every joint
-/// (`fit_arm`). Its friction, rotor inertia and offset become the findings there. What else was found at the
-/// joint or its actuator gets a confidence below 0.5, except contacts, and a gain that the fit shows, too.
-/// Joints that hardly move, or for less than ten blocks of time, keep their findings. Sets `textbook` of the
-/// diagnosis and `extended`. Cost: that of `fit_arm`.
+/// Makes findings of the friction, rotor inertia and offset that least squares finds on the whole recording:
+/// at each joint where plain least squares is the extended model (`fit_moving_rows`), or, for an arm with
+/// real gears, at every joint (`fit_arm`). Other findings at the joint or its actuator get a confidence below
+/// 0.5, except contacts and a gain that the fit confirms. Joints that hardly move, or for less than ten
+/// blocks of time, keep their findings. Sets `textbook` of the diagnosis and `extended`. Cost: see `fit_arm`.
 void name_by_least_squares(DiagnosisWork& work);
 
 } // namespace dfdyn::tools

@@ -162,13 +162,13 @@ void add_rest(std::vector<Unexplained>& unexplained, const std::vector<Unexplain
 
 namespace {
 
-/// Inputs on which an output's rest depends, and the gain of a model of them in each held-out block.
+/// Inputs on which an output's residual depends, and the gain of their model in each held-out block.
 struct FoundInputs {
     Unexplained entry;
     Eigen::VectorXd gains = Eigen::VectorXd::Zero(blocks);
 };
 
-/// Chooses inputs one by one as long as a model of them predicts the held-out blocks better.
+/// Forward selection of inputs, while their model improves the prediction of held-out blocks.
 FoundInputs inputs_of_rest(const std::vector<InputFunctions>& candidates, const Eigen::MatrixXd& target,
                            const Eigen::VectorXd& noise, Eigen::Index output) {
     FoundInputs found{.entry = {output, 0, {}, {}}};

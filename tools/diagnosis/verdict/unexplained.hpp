@@ -5,7 +5,7 @@
 
 namespace dfdyn::tools {
 
-/// Returns the dependences that the fit contains without a name.
+/// Returns the unnamed dependences that the fit contains.
 std::vector<Unexplained> unnamed_dependences(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                                              const FittedEffects& fitted_effects);
 
