@@ -115,7 +115,7 @@ int push(const PanelOptions& options) {
 
 void add_seeds(CLI::App& command, PanelOptions& options) {
     command.add_option("--seed", options.seed,
-                       "Of the first case; each further one has the next. Without it a new one is drawn");
+                       "Seed of the first case; each further case has the next seed. Default: a random seed");
     command.add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
 }
 
@@ -124,7 +124,7 @@ void add_tables(CLI::App& command, PanelOptions& options) {
 }
 
 CLI::App* add_pushes(CLI::App& app, PanelOptions& options) {
-    CLI::App* command = app.add_subcommand("pushes", "Diagnoses arms that are pushed while they stand");
+    CLI::App* command = app.add_subcommand("pushes", "Diagnoses arms that are pushed during standstill");
     add_seeds(*command, options);
     add_tables(*command, options);
     return command;
@@ -132,7 +132,7 @@ CLI::App* add_pushes(CLI::App& app, PanelOptions& options) {
 
 CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
     CLI::App* command = app.add_subcommand(
-        "changes", "Watches arms that change while they are learned, and tells what the monitor found");
+        "changes", "Replays arms that change while they are learned; reports the findings of the monitor");
     add_seeds(*command, options);
     command->add_option("--robot", options.changes.robot, "Always this arm")
         ->check(CLI::IsMember(change_robot_names()));
@@ -175,22 +175,20 @@ void add_mix(CLI::App& command, PanelOptions& options) {
 }
 
 int run(int argc, char** argv) {
-    CLI::App app("Recordings of simulated arms with hidden effects, to test who looks for them");
+    CLI::App app("Recordings of simulated arms with hidden effects, to test methods that identify them");
     app.require_subcommand(1);
     PanelOptions options;
     CLI::App* generating = app.add_subcommand(
-        "generate", "Writes caseNNNN.csv, what may be seen, and caseNNNN.truth.json, the answer");
+        "generate", "Writes caseNNNN.csv, the recording, and caseNNNN.truth.json, the answer");
     add_mix(*generating, options);
     generating->add_option("-o,--output", options.directory, "Folder")->required();
-    CLI::App* scoring =
-        app.add_subcommand("score", "Diagnoses the cases and tells what was found, as tables");
+    CLI::App* scoring = app.add_subcommand("score", "Diagnoses the cases and prints the results as tables");
     add_mix(*scoring, options);
-    scoring->add_option("--threads", options.threads, "Cases at the same time")->check(CLI::Range(1, 64));
+    scoring->add_option("--threads", options.threads, "Cases in parallel")->check(CLI::Range(1, 64));
     add_tables(*scoring, options);
-    scoring->add_flag(
-        "--hold", options.hold,
-        "Status 1 where less is right than has been on the tests' panels: of 60 short recordings, "
-        "or from 200 s on of a thousand long ones");
+    scoring->add_flag("--hold", options.hold,
+                      "Status 1 if a rate is below its limit from the tests' panels: 60 short recordings, or "
+                      "from 200 s on a thousand long ones");
     const CLI::App* const changes = add_changes(app, options);
     const CLI::App* const pushes = add_pushes(app, options);
     CLI11_PARSE(app, argc, argv);

@@ -9,7 +9,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double gap_in_sample_times = 10;
-/// Gaps whose ends a thinned page has for sure. Of more, it has the ends to the nearest tick kept.
+/// Number of gaps whose ends a thinned page always keeps. Of further gaps it has the nearest ticks kept.
 constexpr std::size_t most_gaps = 5000;
 
 using Ticks = std::vector<std::size_t>;

@@ -15,10 +15,9 @@ struct PageCurves {
     double sample_time_s = 1;        ///< median of all ticks, also of those that the page does not have
 };
 
-/// Returns the report with at most `most_report_ticks` ticks: of more, those with the extremes of each output
-/// and of its error in stretches of equal length, and those at gaps. A gap is where a recording begins and
-/// where the time between two ticks exceeds ten times the median; gaps are searched in all ticks. Cost:
-/// ticks times series.
+/// Returns the report with at most `most_report_ticks` ticks. Of longer reports it keeps the extremes of each
+/// output and its error in intervals of equal length, and the ticks at gaps. Gaps, searched in all ticks, are
+/// the start of a recording and a time step of more than ten times the median. Cost: ticks times series.
 PageCurves page_curves(const Report& report);
 
 } // namespace dfdyn::tools

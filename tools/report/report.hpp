@@ -78,22 +78,21 @@ struct Report {
     std::vector<ReportInterval> intervals;
     std::vector<ReportMark> marks;
     std::vector<ReportRecording> recordings; ///< in order of start_s
-    /// Name of the CSV file beside the page that has all ticks, which a page with a part of them links;
-    /// empty: none
+    /// Name of the CSV file with all ticks in the page's folder, to which a thinned page links; empty: none
     std::string full_data;
 };
 
-/// Ticks of the curves in a page, at most: stretches shorter than a pixel of a large screen.
+/// Largest number of ticks of a page's curves: their intervals are shorter than a pixel of a large screen.
 constexpr std::size_t most_report_ticks = 60'000;
 
 /// Returns whether the page has only a part of the ticks.
 bool has_thinned_page(const Report& report);
 
 /// Returns the report as one HTML page without external files or network access. Throws std::invalid_argument
-/// with the field's name if lengths or times violate the contracts above. Cost O(ticks * series). Of more
-/// than `most_report_ticks` ticks the page has those with the extremes of each output and of its error, in
-/// stretches of equal length and those at gaps, and says so: at most about 16 bytes per kept tick and output,
-/// and 150 kB for the page itself.
+/// with the field's name if lengths or times violate the contracts above. Cost O(ticks * series). Above
+/// `most_report_ticks` ticks, the page has those with the extremes of each output and its error in intervals
+/// of equal length, and those at gaps, and states this: at most about 16 bytes per kept tick and output, and
+/// 150 kB for the page itself.
 std::string render_report(const Report& report);
 
 } // namespace dfdyn::tools

@@ -85,7 +85,7 @@ std::optional<std::string> inertia_fault(const InertialParameters& parameters) {
     if (principal[0] >= -std::abs(tolerance)) {
         return std::nullopt;
     }
-    // A principal inertia is the sum of two principal moments; the smallest one is that of the two smallest.
+    // A principal inertia is the sum of two principal second moments; the smallest one uses the two smallest.
     return principal[0] + principal[1] < 0
                ? "its inertia about the centre of mass is not positive"
                : "one of its principal inertias is larger than the sum of the other two";

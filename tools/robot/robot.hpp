@@ -29,7 +29,7 @@ struct RobotJoint {
 struct ForceTorqueSensor {
     std::string joint;    ///< the fixed joint's name
     std::size_t link = 0; ///< link that carries it: 0 the base, i the link of joint i
-    /// Pose of its frame (that of the fixed joint's child) in the frame of the carrying link.
+    /// Pose of its frame (the frame of the fixed joint's child) in the frame of the carrying link.
     Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();
     bool parent_to_child = false; ///< direction of the measured wrench
     InertialParameters inertia_beyond =

@@ -27,8 +27,7 @@ double cell(const Columns& columns, std::size_t row, std::size_t index) {
 
 bool constant(const Columns& columns, std::size_t index) { return !(travel(columns, index) > 0); }
 
-/// Returns whether the links that joint `joint` moves have any inertia in the robot's file; true without a
-/// robot.
+/// Returns whether the links moved by joint `joint` have inertia in the robot's file; true without a robot.
 bool moves_mass(const Robot* robot, std::size_t joint) {
     if (robot == nullptr || joint >= robot->joints.size()) {
         return true;
@@ -77,7 +76,7 @@ double travel_in(const Recording& recording, const Run& run, std::size_t joint) 
     return largest - least;
 }
 
-/// Detects outputs that have one value for some time while their joint moves, and others elsewhere.
+/// Detects outputs that are constant for 2 s while their joint moves, but vary elsewhere.
 SetupFindings check_frozen_outputs(const Recording& recording, OutputKind outputs) {
     constexpr double longest_s = 2;
     SetupFindings findings;
@@ -103,7 +102,7 @@ SetupFindings check_frozen_outputs(const Recording& recording, OutputKind output
     return findings;
 }
 
-/// How often an output is at an end of its range, and near it.
+/// Number of rows in which an output is at an end of its range, and near it.
 struct Limit {
     double value = 0;
     std::size_t at = 0, near = 0; ///< rows
@@ -131,7 +130,7 @@ Limit limit_of(const Recording& recording, std::size_t output, double end, doubl
     return limit;
 }
 
-/// The step of which all values of a column are multiples; empty if there is none, or too few values.
+/// Returns the quantization step of a column; empty if there is none, or for too few values.
 std::optional<double> quantum_of(const Columns& columns, std::size_t index) {
     constexpr std::size_t fewest_values = 5;
     std::vector<double> values;
@@ -258,11 +257,11 @@ Deviation deviation(const Recording& recording, std::size_t row, std::size_t joi
     return {cell(recording.position, row, joint) - predicted, slope};
 }
 
-/// The common error of time of moving joints, over all rows.
+/// The common time error of the moving joints, over all rows.
 struct StampError {
     double squares_s2 = 0, rows = 0;
     double total = 0,
-           left = 0; ///< squared deviations of the positions, and those that no error of time explains
+           left = 0; ///< squared deviations of the positions, before and after a common time error
 
     void add(const std::vector<Deviation>& joints) {
         double product = 0;
@@ -280,7 +279,8 @@ struct StampError {
         rows += 1;
     }
     double rms_s() const {
-        constexpr double of_neighbours = 1.9; // variance of a deviation over that of one row's error
+        constexpr double of_neighbours =
+            1.9; // variance of a deviation, relative to the variance of one row's error
         return std::sqrt(squares_s2 / rows / of_neighbours);
     }
 };
@@ -312,7 +312,7 @@ SetupFindings check_stamps(const Recording& recording) {
     constexpr double most_of_step = 0.15;
     constexpr double least_explained = 0.95;
     constexpr double fewest = 100;
-    constexpr double longest_step_s = 0.025; // with longer ones the course between the rows is not known
+    constexpr double longest_step_s = 0.025; // longer steps do not determine the motion between the rows
     const double step_s = median_step_s(recording);
     if (!(step_s < longest_step_s)) {
         return {};

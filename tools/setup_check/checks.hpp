@@ -47,8 +47,8 @@ double largest_magnitude(const Columns& columns, std::size_t index);
 SetupFindings check_dead_outputs(const Recording& recording, OutputKind outputs, const Robot* robot);
 
 /// Detects outputs that stay at their largest or smallest value, at least three rows in a row and in 10 rows
-/// in all, while the arm moves. A mistake if these rows are more than those within the nearest 2 % of the
-/// output's range: without a limit, values close to it would be more frequent. Wrenches are not checked.
+/// in all, while the arm moves. A mistake if more rows are at this value than within the nearest 2 % of the
+/// output's range: without saturation, values close to it would be more frequent. Wrenches are not checked.
 /// Cost: O(rows).
 SetupFindings check_saturated_outputs(const Recording& recording, OutputKind outputs);
 
@@ -56,8 +56,8 @@ SetupFindings check_saturated_outputs(const Recording& recording, OutputKind out
 /// Cost: O(rows log rows).
 SetupFindings check_quantised_positions(const Recording& recording);
 
-/// Detects time stamps that deviate from the instants of the samples by 15 % of a step and more (rms),
-/// as rounded ones do. While two joints or more move, the deviation from a smooth course is then the velocity
+/// Detects time stamps that deviate from the sample times by 15 % of a step and more (rms), for example
+/// rounded ones. While two joints or more move, the deviations from smooth motions are then the velocities
 /// times one common time. Rows 25 ms apart and more are not checked. Cost: O(rows).
 SetupFindings check_stamps(const Recording& recording);
 
@@ -91,10 +91,10 @@ SetupFindings check_output_size(const ArmRecording& arm);
 SetupFindings check_readings(const ArmRecording& arm);
 
 /// Detects a robot's file that does not belong to the recording: a mistake if smooth functions of the motion
-/// explain the outputs of the joints that carry weight far better than the file's rigid body with any payload
-/// does, and the file leaves much. Each joint is compared in the rows in which it moves, if they are
-/// enough for so many functions. Joints without gravity in the file, and wrenches, are not compared. Cost:
-/// T (8 n)^2 per output.
+/// explain the outputs of the gravity-loaded joints far better than the file's rigid body with any payload,
+/// whose residual is large. Each joint is compared in the rows in which it moves, if they are enough for this
+/// number of functions. Joints without gravity in the file, and wrenches, are not compared. Cost: T (8 n)^2
+/// per output.
 SetupFindings check_robot_match(const ArmRecording& arm);
 
 } // namespace dfdyn::tools

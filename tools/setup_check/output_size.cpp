@@ -21,8 +21,8 @@ using Eigen::VectorXd;
 
 constexpr double most_torque_constant = 500; ///< N·m/A at a joint, behind its gear
 
-/// Returns the magnitude of the factor between an output and the rigid body's; empty if the rigid body
-/// explains too little.
+/// Returns the ratio of an output to the rigid body's, as a magnitude; empty if the rigid body explains too
+/// little.
 std::optional<double> size_of(const ArmRecording& arm, const RigidParts& parts, Index k) {
     constexpr double clearly = 0.5;
     const VectorXd output = arm.output(k);
@@ -85,7 +85,7 @@ SetupFindings check_output_size(const ArmRecording& arm) {
     if (factor < too_large && factor > too_small) {
         return {};
     }
-    // a payload can dominate one joint, but makes no output smaller
+    // a payload can dominate one joint, but never makes an output much smaller
     const bool certain = several || arm.wrench() || arm.counted() == 1 || factor < too_small;
     const Severity severity = certain ? Severity::mistake : Severity::warning;
     const std::string columns = listed(arm.recording.output.names);

@@ -32,7 +32,7 @@ struct Reading {
     bool may_refuse; ///< false: a warning at most
     std::string columns;
     std::string expected, remedy; ///< parts of the text, before and after the comparison
-    std::vector<Index> concerned; ///< outputs for the comparison in the text; empty: all
+    std::vector<Index> concerned; ///< affected outputs, which the text compares; empty: all
     VectorXd left;                ///< remaining share of each output's variance
 };
 
@@ -201,8 +201,8 @@ bool moves_enough(const ArmRecording& arm, const RigidParts& parts, SetupFault f
     return swings(arm.recorded.motion, joint, likely_turns);
 }
 
-/// Returns whether an alternative explains an output that is explained badly now much better, and none of
-/// those concerned worse.
+/// Returns whether an alternative explains a badly explained output much better, and no affected output
+/// worse.
 bool supported(const ArmRecording& arm, const RigidParts& parts, const Reading& reading,
                const VectorXd& now) {
     constexpr double much_better = 0.6;
@@ -224,7 +224,7 @@ bool supported(const ArmRecording& arm, const RigidParts& parts, const Reading& 
     }
     if (reading.fault == SetupFault::joint_order && before.mean() > badly &&
         (after.array() < half * before.array()).all()) {
-        return true; // two outputs agree, whatever their joints' motion
+        return true; // two outputs agree, for any motion of their joints
     }
     return shown && after.mean() < half * before.mean() && (after.array() < 1.1 * before.array()).all() &&
            std::ranges::all_of(reading.concerned,

@@ -19,8 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rows in which a joint moves. A standing joint's friction may hold any torque up to its break-away torque,
-/// one for each posture, and smooth functions of a few postures describe that, too.
+/// Rows in which a joint moves. Static friction may hold any torque up to the break-away torque, a different
+/// one in each posture, and smooth functions of a few postures would describe these.
 std::vector<Index> moving_rows(const RobotMotion& motion, Index joint) {
     constexpr double share = 0.1;
     const VectorXd speed = motion.velocity.col(joint).cwiseAbs();
@@ -34,8 +34,8 @@ std::vector<Index> moving_rows(const RobotMotion& motion, Index joint) {
     return rows;
 }
 
-/// Returns how many rows of a recording are independent: the derivatives of rows within 0.04 s share two
-/// thirds of a window.
+/// Returns the number of independent rows: derivatives of rows within 0.04 s share two thirds of their
+/// window.
 double independent_rows(const ArmRecording& arm, std::size_t rows) {
     constexpr double apart_s = 0.04;
     const std::vector<double>& time_s = arm.recording.time_s;
@@ -43,13 +43,13 @@ double independent_rows(const ArmRecording& arm, std::size_t rows) {
     return static_cast<double>(rows) * std::min(1.0, step_s / apart_s);
 }
 
-/// Shares of an output's variance that two models leave while the joint moves.
+/// Remaining shares of an output's variance for two models, while the joint moves.
 struct Comparison {
     double by_robot = 0; ///< the robot's body, with any payload and friction
-    double by_any = 0;   ///< smooth functions of the motion and friction, per degree of freedom that is left
+    double by_any = 0;   ///< smooth functions of the motion and friction, per remaining degree of freedom
 };
 
-/// Compares the models at a joint; empty if it moves for too few rows to tell so many functions from chance.
+/// Compares the models at a joint; empty if it moves in too few rows for the number of functions.
 std::optional<Comparison> compare(const ArmRecording& arm, const RigidParts& parts, const MatrixXd& smooth,
                                   Index joint) {
     constexpr double least_free = 0.5;

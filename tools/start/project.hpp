@@ -21,8 +21,8 @@ FolderContent project_files(const TrainedModel& model, const Recording& recordin
 /// Throws InputError unless `folder` does not exist or is an empty folder, and its parent is writable.
 void require_new_folder(const std::filesystem::path& folder);
 
-/// Creates `folder` with all files, or nothing: writes a folder beside it, then renames that one. Throws
-/// InputError with path and reason.
+/// Creates `folder` with all files, or nothing: writes a temporary folder, then renames it. Throws InputError
+/// with path and reason.
 void write_folder(const std::filesystem::path& folder, const FolderContent& content);
 
 } // namespace dfdyn::tools

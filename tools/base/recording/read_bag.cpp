@@ -28,7 +28,7 @@ struct Stamped {
     Message message;
 };
 
-/// Messages of a bag that a recording is made of.
+/// Messages of a bag from which a recording is made.
 struct BagContent {
     std::vector<Stamped<JointStateMessage>> joints;
     std::vector<Stamped<WrenchMessage>> wrenches;
@@ -307,7 +307,7 @@ class BagRecording {
         gap_ = true;
     }
 
-    /// Returns a note on what is read as one recording; empty for a single file.
+    /// Returns a note that several bags are read as one recording; empty for a single file.
     std::string bags_note() const {
         Names files;
         for (const std::filesystem::path& file : bag_files(path_)) {

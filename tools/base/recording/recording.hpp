@@ -66,7 +66,7 @@ struct SkippedRows {
     std::size_t not_a_number = 0; ///< a required field is empty or no decimal number
     /// nan, infinite, or not representable as a double (a time: as int64 nanoseconds)
     std::size_t out_of_range = 0;
-    std::size_t time_not_increasing = 0; ///< time not later than that of the last row kept
+    std::size_t time_not_increasing = 0; ///< time not later than the last kept row's
 
     std::size_t total() const noexcept { return ragged + not_a_number + out_of_range + time_not_increasing; }
 };
@@ -89,7 +89,7 @@ struct Recording {
     SkippedRows skipped;
     /// Columns in the file that were not read, for a message (with `listed`): `i1`, `column 7 (unnamed)`.
     std::vector<std::string> ignored_columns;
-    std::vector<std::string> notes; ///< what was assumed about the file; one line each
+    std::vector<std::string> notes; ///< assumptions about the file; one line each
 
     std::size_t row_count() const noexcept { return time_ns.size(); }
     std::size_t joint_count() const noexcept { return position.names.size(); }

@@ -9,7 +9,7 @@
 namespace dfdyn::tools {
 
 /// The results of one command: files and new folders that appear together, or not at all. Files are written
-/// under temporary names beside their targets (AtomicFile), new folders with their content as
+/// under temporary names in the folders of their targets (AtomicFile), new folders with their content as
 /// `FOLDER.tmp.PID.N`. `commit` renames all of them when the last one is complete. Without `commit` (an
 /// exception, Ctrl-C, a full disk), and if a rename fails, every target is as it was before. Signals are
 /// delivered before or after the renames. Only SIGKILL or a power failure during the renames leaves a part.

@@ -8,7 +8,7 @@
 
 namespace dfdyn::tools {
 
-// What files that are written have in common, whether they are replaced or grow.
+// Common parts of AtomicFile and of files that are written continuously.
 
 /// Buffer for a file descriptor. Throws InputError about `path` if the system rejects a write.
 class DescriptorBuffer : public std::streambuf {
@@ -41,8 +41,7 @@ class DescriptorBuffer : public std::streambuf {
     std::array<char, 1U << 16U> buffer_{};
 };
 
-/// Without this, the kernel ends the program when a file reaches `ulimit -f`; with it, the write fails with a
-/// reason.
+/// Ignores SIGXFSZ, so that a write beyond `ulimit -f` fails with a reason instead of ending the program.
 void ignore_file_size_signal();
 
 /// Throws InputError if `target` is `-`: recordings are read from it, but nothing is written to it.

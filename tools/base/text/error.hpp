@@ -13,7 +13,7 @@ class InputError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A recording without the columns that were asked for; others may be there.
+/// A recording without the required columns.
 class MissingColumns : public InputError {
   public:
     using InputError::InputError;

@@ -12,9 +12,8 @@ namespace dfdyn::tools {
 
 enum class Verdict { holds, contradicted, undecided };
 
-/// Result of a comparison. A draw's ratio is the error of `better` divided by that of `worse`, both for the
-/// same draw and averaged over the subsets (`phase_error` of each). An infinite error is larger than any
-/// other.
+/// Result of a comparison. A draw's ratio is the error of `better` divided by the error of `worse`, for the
+/// same draw, averaged over the subsets (`phase_error` of each). An infinite error is larger than any other.
 struct ComparisonOutcome {
     Comparison comparison;
     std::size_t draws = 0;                                     ///< draws for which both cases have errors

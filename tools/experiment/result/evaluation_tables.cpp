@@ -202,7 +202,7 @@ ReportTable cost_table(const Plan& plan, std::span<const JobResult> jobs) {
             static_cast<double>(draws.front()->state_bytes),
             median_over(draws, [](const JobResult& draw) { return draw.median_us; })};
     });
-    table.note = "Times are of the machine that ran this, with other work beside it.";
+    table.note = "Times are of the machine that ran this, under other load.";
     return table;
 }
 

@@ -101,7 +101,7 @@ Eigen::Matrix3d turn_to_negative_z(const Eigen::Vector3d& direction) {
     return Eigen::Quaterniond(scale / 2, axis.x(), axis.y(), axis.z()).toRotationMatrix();
 }
 
-/// Prints a root link whose z axis points up, if that of the robot's base does not.
+/// Prints a root link with an upward z axis, unless the z axis of the robot's base points up.
 void print_gravity_frame(XMLPrinter& out, const Robot& robot) {
     const Eigen::Vector3d down = robot.gravity.normalized();
     if (robot.gravity.norm() > 0 && (down + Eigen::Vector3d::UnitZ()).norm() > 1e-12) {

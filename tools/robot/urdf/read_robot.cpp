@@ -131,7 +131,7 @@ void add_direction(Robot& robot, const std::vector<DeclaredSensor>& declared,
         if (!own->frame.empty() && own->frame != "child") {
             robot.notes.push_back("F/T sensor at joint " + in_quotes(robot.sensor->joint) +
                                   ": the file gives its wrench in frame " + in_quotes(own->frame) +
-                                  "; it is taken to be in the frame of the joint's child");
+                                  "; it is assumed to be in the frame of the joint's child");
         }
     }
     robot.sensor->parent_to_child = wanted.value_or(robot.sensor->parent_to_child);

@@ -29,7 +29,7 @@ struct ReadRobotOptions {
 /// type="force_torque">` in the file, under `<gazebo reference="JOINT">` or with `<parent joint="JOINT"/>`.
 /// If the file has none for the chain, it is the one fixed joint of the chain with `force_torque`,
 /// `ft_sensor` or the word `ft` in its name. For several candidates the robot has no sensor, and a note. The
-/// sensor's frame is always that of the joint's child; a pose or frame in the file is ignored.
+/// sensor's frame is always the frame of the joint's child; a pose or frame in the file is ignored.
 ///
 /// Throws InputError, one line with the file and the link or joint, for:
 /// - a file that is not XML or no URDF (with urdfdom's message), or a missing link;

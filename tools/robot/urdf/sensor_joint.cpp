@@ -69,7 +69,7 @@ urdf::JointConstSharedPtr find_sensor_joint(const Joints& chain, const std::vect
                              [](const auto& joint) { return sounds_like_sensor(joint->name); });
     }
     if (candidates.size() > 1) {
-        notes.push_back("several fixed joints may carry the F/T sensor, none is taken: " +
+        notes.push_back("several fixed joints may carry the F/T sensor, none is used: " +
                         listed(names_of(candidates)));
     }
     return candidates.size() == 1 ? candidates.front() : nullptr;

@@ -106,7 +106,7 @@ void check_tree(const urdf::ModelInterface& model, const std::string& file) {
     for (const auto& [name, link] : model.links_) {
         if (!reached.contains(name)) {
             throw InputError(file + ": expected a tree, found that link " + in_quotes(name) +
-                             " is in a loop, or hangs on one");
+                             " is in a loop, or attached to one");
         }
     }
 }

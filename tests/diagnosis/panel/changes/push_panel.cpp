@@ -59,7 +59,7 @@ PushScore run_push_case(std::uint64_t seed) {
 
 ReportTable size_table(const std::vector<PushScore>& scores) {
     constexpr std::array edges{0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 4.0};
-    ReportTable table{"Found, by the push's peak over what friction can change by",
+    ReportTable table{"Found, by the ratio of the push's peak to the possible change of static friction",
                       {"peak", "named", "with 0.5 and more"},
                       {},
                       ""};

@@ -87,21 +87,21 @@ std::vector<Line> lines_of(const PanelSummary& summary) {
         {"exact name where nothing ties, strength 1 and more", summary.exact_name, 0.95, 0.85, 0.94},
         {"main parameter within 20 %, strength 1 and more", summary.parameter_within_20, 0.90, 0.8, 0.9},
         {"main parameter inside its 95 % interval", summary.parameter_in_interval, 0.90, 0.8, 0.87},
-        {"torque constants that nobody gave, within 20 %", summary.constant_within_20, 0.90, 0.5, 0.97},
-        {"torque constants that nobody gave, inside their 95 % interval", summary.constant_in_interval, 0.90,
-         0.8, 0.93},
+        {"torque constants that were not given, within 20 %", summary.constant_within_20, 0.90, 0.5, 0.97},
+        {"torque constants that were not given, inside their 95 % interval", summary.constant_in_interval,
+         0.90, 0.8, 0.93},
         {"recordings without any effect that have a finding at 0.5 or more", summary.null_with_finding, 0.05,
          0.05, 0.03, false},
         {"findings at 0.9 or more that are wrong", summary.confident_and_wrong, 0.05, 0.05, 0.05, false},
         {"two effects at once, both of strength 1 and more: both named", summary.both_named, 0.85, 0.6, 0.85},
         {"two effects at once, one or both at 0.3: both named", summary.both_named_with_weak, 0.85, 0, 0.5},
-        {"effects outside the catalogue, strength 1 and more: no wrong name, output and input told",
+        {"effects outside the catalogue, strength 1 and more: no wrong name, right output and input",
          summary.outside_silent, 0.80, 0.8, 0.85},
         {"the same at strength 0.3", summary.outside_weak, 0.80, 0, 0.5}};
 }
 
 ReportTable target_table(const PanelSummary& summary) {
-    ReportTable table{"What is asked for, and what was reached", {"", "reached", "target", "met"}, {}, ""};
+    ReportTable table{"Rates and targets", {"", "reached", "target", "met"}, {}, ""};
     for (const Line& line : lines_of(summary)) {
         std::array<char, 32> target{};
         std::snprintf(target.data(), target.size(), "%s %.0f %%", line.at_least ? "≥" : "≤",
@@ -117,7 +117,7 @@ ReportTable target_table(const PanelSummary& summary) {
                       summary.exact);
         met = summary.mean_harm <= largest_harm ? "yes" : "no";
     }
-    table.rows.push_back({std::string("held-out error with the causes, where there is nothing but noise"),
+    table.rows.push_back({std::string("held-out error with the causes, in recordings with noise only"),
                           std::string(harm.data()), std::string("≤ 0.5 %"), std::string(met)});
     return table;
 }
@@ -155,7 +155,7 @@ ReportTable evidence_table(const std::vector<CaseScore>& scores) {
         const std::size_t column = effect.strength >= 2 ? 2 : effect.strength >= nominal_strength ? 1 : 0;
         found[std::min(band, found.size() - 1)][column].add(effect.found());
     }
-    ReportTable table{"Found, by the evidence that there is", {"evidence", "0.3", "1", "3 and more"}, {}, ""};
+    ReportTable table{"Found, by the available evidence", {"evidence", "0.3", "1", "3 and more"}, {}, ""};
     for (std::size_t band = 0; band < found.size(); ++band) {
         std::array<char, 48> range{};
         if (band + 1 < found.size()) {
@@ -180,7 +180,7 @@ ReportTable confusion_table(const std::vector<CaseScore>& scores) {
             }
         }
     }
-    ReportTable table{"What was named in the place of what was hidden, strength 1 and more",
+    ReportTable table{"Wrong names instead of hidden effects, strength 1 and more",
                       {"hidden", "first finding", "recordings"},
                       {},
                       ""};
@@ -209,7 +209,7 @@ std::string percent(const Rate& rate) {
 }
 
 ReportTable reliability_table(const std::vector<Judged>& judged) {
-    ReportTable table{"How often findings were right", {"confidence", "mean confidence", "right"}, {}, ""};
+    ReportTable table{"Right findings by confidence", {"confidence", "mean confidence", "right"}, {}, ""};
     constexpr std::array edges{0.0, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.01};
     for (std::size_t bin = 0; bin + 1 < edges.size(); ++bin) {
         Rate right;

@@ -94,8 +94,8 @@ TEST_CASE("a push at a joint at rest has the unit of the joint") {
         const std::string& evidence = findings.front().evidence;
         CAPTURE(joint, evidence);
         CHECK_THAT(evidence,
-                   ContainsSubstring(joint == 2 ? "by 10 ± 1.96 N, and its force changes by 30"
-                                                : "by 10 ± 1.96 N·m, and its torque changes by 30"));
+                   ContainsSubstring(joint == 2 ? "by 10 ± 1.96 N, but its force changes by 30"
+                                                : "by 10 ± 1.96 N·m, but its torque changes by 30"));
     }
 }
 

@@ -9,8 +9,8 @@
 
 namespace dfdyn::tools {
 
-/// Returns the separator of a CSV header: that of comma, semicolon and tab that occurs most often outside
-/// quotes; a comma if there is none.
+/// Returns the separator of a CSV header: the most frequent of comma, semicolon and tab outside quotes; a
+/// comma if there is none.
 char separator_of(std::string_view header);
 
 /// Splits a line at the separators outside double quotes. A field is trimmed; a field that is quoted as a

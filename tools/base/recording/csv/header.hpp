@@ -17,7 +17,7 @@ struct Header {
     std::vector<std::string> columns; ///< every column of the file, in order
     std::vector<std::optional<std::size_t>>
         slot;                   ///< per column: its place among the values read; empty if ignored
-    std::vector<double> factor; ///< per value read: from the file's unit to that of the recording; time: 1
+    std::vector<double> factor; ///< per value read: from the file's unit to the recording's; time: 1
     /// Names of the values read, in the order of their places. The time is at place 0.
     std::vector<std::string> position, velocity, acceleration, output;
 
