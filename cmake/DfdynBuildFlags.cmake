@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Generates the source of dfdyn::tools::build_flags() with the compiler and the flags that dfdyn_tools is built with
-# (warnings left out: they do not change what is built).
+# Generates the source of dfdyn::tools::build_flags() with the compiler and the flags that dfdyn_tools is built with (without
+# warnings, which do not change the result).
 set(dfdyn_config_flags "")
 foreach(config IN ITEMS Debug Release RelWithDebInfo MinSizeRel)
     string(TOUPPER "${config}" config_upper)

@@ -39,7 +39,7 @@ endfunction()
 
 # dfdyn_compile_by_folder(TARGET [HEADER...]): with DFDYN_COMPILE_BY_FOLDER, compiles all sources of a target in one folder of the
 # caller, with its subfolders, as one file. The headers, which most of them include, are precompiled. Call it after all sources have
-# been added. Only the folder decides what is compiled together, so that names clash in every build or in none.
+# been added. The grouping depends on the folder only, so that names clash in every build or in none.
 function(dfdyn_compile_by_folder target)
     if(NOT DFDYN_COMPILE_BY_FOLDER)
         return()
@@ -63,7 +63,7 @@ function(dfdyn_compile_by_folder target)
         # GCC 12's warnings about bounds depend on inlining, and most are wrong if a folder is one file.
         target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
     elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-        # A name that another file of the folder has to itself is none that could be mistaken.
+        # A file-local name of another file in the folder cannot be confused with this one.
         target_compile_options(${target} PRIVATE -Wno-shadow)
     endif()
 endfunction()

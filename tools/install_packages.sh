@@ -57,7 +57,7 @@ virtual_time_packages=(
     "iproute2:it has no CAN interface"
 )
 
-# Not to be had everywhere; what needs them says that it checked nothing.
+# Not available everywhere; tests that need them report that they checked nothing.
 optional_test_packages=("clang-22" "libclang-rt-22-dev")
 
 is_installed() {

@@ -44,7 +44,7 @@ test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "
 # clang++ has the sanitizers: it builds them in about three quarters of the time that g++ takes, and is the second compiler.
 test_sanitized() {
     build asan-ubsan dfdyn_embedding dfdyn_linux_loop dfdyn_firmware_tests dfdyn_hal_tests
-    # What is compiled for bare metal has no sanitizer, and was tested above.
+    # Bare-metal code has no sanitizer, and was tested above.
     run_tests asan-ubsan --label-regex '^(firmware|hal|embedding)$' --exclude-regex '^hal\.bare_metal$'
 }
 test_sanitized_tools() {

@@ -12,7 +12,7 @@ using namespace tools;
 
 namespace {
 
-/// The effect that is broken, and how. Effects have plain functions, which find their original here.
+/// The broken effect and its fault. Effects have plain functions, which find their original here.
 struct BrokenEffect {
     const Effect* original = nullptr;
     ColumnFault fault = ColumnFault::zero;

@@ -16,8 +16,7 @@ int count(const std::vector<ChangeScore>& scores, bool (*holds)(const ChangeScor
 
 } // namespace
 
-// The limits are the least that these seeds must give; docs/guide/monitor.md has the shares over many more
-// cases.
+// The limits are minimums for these seeds; docs/guide/monitor.md has the rates over many more cases.
 TEST_CASE("most changes hidden in simulated arms are found with their cause and place", "[changes]") {
     ChangeMix mix;
     mix.duration_s = 82;

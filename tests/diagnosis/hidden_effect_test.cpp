@@ -27,7 +27,7 @@ constexpr double least_confidence = 0.5;
 /// In place of a seed: the arm cannot have the effect in this strength, or its outputs do not show it.
 constexpr std::uint64_t no_seed = 0;
 
-/// How an effect is hidden on each arm. Seeds are fixed, because about one random recording in forty misses.
+/// Seed of an effect's case on each arm; fixed, because about one of forty random recordings misses it.
 struct EffectTest {
     const char* effect;
     std::array<std::uint64_t, test_arms.size()> seeds;
@@ -99,8 +99,8 @@ double null_value(const std::string& effect, const std::string& parameter) {
     return kind->null_value.value_or(0);
 }
 
-/// Returns what is wrong with the parameters of a finding, or nothing. The main parameter has the test's
-/// tolerance; the others may also be anywhere within their interval.
+/// Returns the faults of a finding's parameters, or an empty text. The main parameter has the test's
+/// tolerance; for the others the true value may also be anywhere within the interval.
 std::string parameter_fault(const HiddenEffect& hidden, const Finding& finding, double tolerance) {
     std::ostringstream fault;
     for (const auto& [name, value] : hidden.parameters) {
@@ -126,7 +126,7 @@ std::string parameter_fault(const HiddenEffect& hidden, const Finding& finding, 
     return fault.str();
 }
 
-/// Returns why the hidden effect does not count as found, or nothing.
+/// Returns why the hidden effect does not count as found, or an empty text.
 std::string missed(const PanelCase& panel_case, const Diagnosis& diagnosis, double tolerance) {
     const HiddenEffect& hidden = panel_case.hidden.front();
     std::string findings;

@@ -6,7 +6,7 @@
 
 using namespace dfdyn::tests;
 
-TEST_CASE("backlash is named with its gap even if the impact differs from that of the whole joint") {
+TEST_CASE("backlash is named with its gap even if the impact is not the whole joint's") {
     for (const auto& [robot, seed] :
          {std::pair{"three_joint_torque", 101600}, std::pair{"ur5_torque", 101604}}) {
         PanelMix mix;

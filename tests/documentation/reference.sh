@@ -12,7 +12,7 @@ for page in classdfdyn_1_1Estimator classdfdyn_1_1FeedForward structdfdyn_1_1Sam
     test -s "$out/html/$page.html"
 done
 
-# Once more without EXTRACT_ALL, which hides what has no comment. Only the warnings count.
+# A second run without EXTRACT_ALL, which hides members without a comment. Only its warnings are used.
 members() {
     cat Doxyfile
     cat <<END

@@ -13,8 +13,8 @@ struct HeapCalls {
 };
 
 /// Counts every heap call during its lifetime, by any thread and any library of the process. The test
-/// program's own malloc replaces that of the C library (under AddressSanitizer: through its hooks). Guards
-/// may nest. Read the counts before an assertion of Catch2, which itself allocates.
+/// program's own malloc replaces the C library's (under AddressSanitizer: through its hooks). Guards may
+/// nest. Read the counts before an assertion of Catch2, which itself allocates.
 ///
 ///     const AllocationGuard guard;
 ///     estimator.tick(sample, budget);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the C++ of the documentation's pages takes for granted: the user's functions, and a model of his arm.
+// Declarations that the documentation's C++ requires: the user's functions, and a model of the user's arm.
 #pragma once
 
 #include "dfdyn/dfdyn.hpp"

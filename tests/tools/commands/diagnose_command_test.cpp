@@ -203,7 +203,7 @@ TEST_CASE("a recording in degrees is reported first and gets no model") {
     CHECK(diagnosis["findings"].empty());
     CHECK_THAT(file_content(folder + "/report.html"), ContainsSubstring("looks like degrees"));
     CHECK_FALSE(std::filesystem::exists(folder + "/extended_model.json"));
-    // a header in the new folder, which is written in two ways, and one beside it
+    // a header in the new folder, whose path is written in two ways, and one outside of it
     for (const std::string header : {"./new/m.hpp", "m.hpp"}) {
         const std::string outputs = " --outputs tau -o new --header " + header;
         CHECK(run_program(directory, "diagnose" + arm + "--log " + log + outputs, directory.path()).status ==

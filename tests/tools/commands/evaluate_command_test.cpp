@@ -25,7 +25,7 @@ Outcome evaluate(const TemporaryDirectory& directory, const std::string& options
     return run_program(directory, "evaluate --plan " + in + "/plan.json -o " + in + "/out " + options);
 }
 
-/// Number of unit files, each of which must be complete.
+/// Returns the number of unit files, after checking that each is complete.
 std::size_t count_job_files(const TemporaryDirectory& directory) {
     std::size_t count = 0;
     if (!std::filesystem::exists(directory.path() / "out/cases")) {

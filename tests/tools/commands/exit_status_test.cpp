@@ -45,7 +45,7 @@ std::vector<std::string> subcommands(const TemporaryDirectory& directory) {
     return names;
 }
 
-TEST_CASE("the page on exit statuses has the row of every command's help text") {
+TEST_CASE("the page on exit statuses has each command's line of the help text") {
     const TemporaryDirectory directory;
     const std::string page = dfdyn::tools::read_file(project / "docs/reference/exit-status.md");
     const std::vector<std::string> names = subcommands(directory);

@@ -87,7 +87,7 @@ TEST_CASE("a loop with a model trained on its own simulated recording tracks bet
     CHECK_THAT(bench.refusal(simulate + model + " --restore " + log), ContainsSubstring("expected what"));
 }
 
-TEST_CASE("a loop without a model cannot save or restore what it learned") {
+TEST_CASE("a loop without a model cannot save or restore a learned state") {
     const Bench bench;
     CHECK_THAT(bench.refusal(simulate + " --save s.bin"), ContainsSubstring("expected --model, found none"));
 }

@@ -43,7 +43,7 @@ Outcome run_after(const std::string& prefix, const TemporaryDirectory& directory
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", file_content(error)};
 }
 
-TEST_CASE("a command whose last file does not fit on the disk leaves none of its files") {
+TEST_CASE("a command whose last file does not fit on the disk leaves no files") {
     const TemporaryDirectory results;
     const TemporaryDirectory directory;
     results.write("earlier.hpp", "earlier");
@@ -68,7 +68,7 @@ TEST_CASE("a command whose last file does not fit on the disk leaves none of its
     CHECK(run_program(directory, arguments, results.path()).status == 0); // with room it succeeds
 }
 
-TEST_CASE("a command that Ctrl-C ends leaves none of its files") {
+TEST_CASE("a command interrupted by Ctrl-C leaves no files") {
     const TemporaryDirectory results;
     const TemporaryDirectory directory;
     nlohmann::json scenario = nlohmann::json::parse(file_content(data + "/scenarios/small_arm.json"));
@@ -83,7 +83,7 @@ TEST_CASE("a command that Ctrl-C ends leaves none of its files") {
     CHECK(state_of(results.path()) == before);
 }
 
-TEST_CASE("a thinned report has its full data beside it and a complete one has not") {
+TEST_CASE("a thinned report has a separate file of all ticks and a complete report has none") {
     const TemporaryDirectory results;
     const TemporaryDirectory directory;
     REQUIRE(run_program(directory, quick_training + " -o model.json", results.path()).status == 0);
@@ -111,7 +111,7 @@ TEST_CASE("a thinned report has its full data beside it and a complete one has n
     CHECK(fs::is_directory(results.path() / "r.ticks.csv"));
 }
 
-TEST_CASE("two outputs of one place are refused however they are named") {
+TEST_CASE("two outputs to the same file are refused under any names") {
     const TemporaryDirectory results;
     const TemporaryDirectory directory;
     const Outcome outcome = run_program(directory,

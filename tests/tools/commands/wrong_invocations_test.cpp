@@ -19,7 +19,7 @@ using dfdyn::tests::TemporaryDirectory;
 
 const std::string data = DFDYN_TEST_DATA_DIR;
 
-/// The places that the table names in braces.
+/// The paths that the table names in braces.
 const std::map<std::string, std::string> places{
     {"{log}", data + "/ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short.csv"},
     {"{jittery}", data + "/ur5_kufieta/Movement_No3_Acc.csv"},
@@ -38,7 +38,7 @@ std::string with_places(std::string text) {
     return text;
 }
 
-/// An invocation, and the message that answers it.
+/// An invocation, and its expected message.
 struct Invocation {
     std::string arguments, message;
 };
@@ -104,14 +104,14 @@ std::map<std::string, std::string> state_of(const fs::path& folder) {
     return state;
 }
 
-/// Returns the last line, which a usage error ends with.
+/// Returns the last line, which contains the usage error.
 std::string last_line(std::string text) {
     text = text.substr(0, text.find_last_not_of('\n') + 1);
     const auto before = text.rfind('\n');
     return before == std::string::npos ? text : text.substr(before + 1);
 }
 
-TEST_CASE("a wrong invocation is answered by what was expected and found, and changes nothing") {
+TEST_CASE("a wrong invocation reports what was expected and found and changes no file") {
     const TemporaryDirectory folder;
     const TemporaryDirectory output;
     write_files(folder);

@@ -3,8 +3,8 @@
 // certain:
 // - its gears have friction;
 // - neither friction nor rotor inertia is negative;
-// - how much heavier its wrist is according to the robot's own controller;
-// - when somebody pushed it.
+// - the additional mass of its wrist according to the robot's own controller;
+// - the times at which somebody pushed it.
 #include "tests/support/catch.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tests/tools/support/ur5_runs.hpp"
@@ -96,7 +96,7 @@ TEST_CASE("a real arm's joint friction and wrist centre of mass are named and no
     std::set<std::string> rubbing;
     for (const Finding& finding : diagnosis.findings) {
         INFO(finding.effect << " at " << finding.where);
-        CHECK_FALSE(is_contact(finding)); // nobody was near the robot
+        CHECK_FALSE(is_contact(finding)); // nobody touched the robot
         if (is_friction(finding)) {
             rubbing.insert(finding.where);
         }
@@ -126,7 +126,7 @@ TEST_CASE("a real arm's joint friction and wrist centre of mass are named and no
     CHECK(mass * parameter(*wrist, "delta_com_y") == Approx(0.033).epsilon(0.25));
 }
 
-TEST_CASE("pushes at a real arm are found at their times and none where nobody pushed") {
+TEST_CASE("pushes at a real arm are found at their times and no others") {
     const Recording undisturbed = currents({"No7_Acc_slow_Verify_Model_short"});
     const Recording pushed = currents({"No7_Acc_slow_Verify_Model_short_with_disturbance"});
     const std::vector<Pushes::Push> pushes = Pushes(pushed, undisturbed).all();

@@ -13,7 +13,7 @@ namespace {
 
 using namespace dfdyn::tools;
 
-/// Documented friction of a joint. That of joints 5 and 6 is not comparable: their motors are coupled.
+/// Documented friction of a joint. Joints 5 and 6 are not comparable, because their motors are coupled.
 struct Documented {
     double viscous, dry;
 };
@@ -52,7 +52,7 @@ double value_of(const Diagnosis& diagnosis, const std::string& effect, const std
 
 } // namespace
 
-TEST_CASE("the friction found in seven seconds of a real TX40 is what its owner documents") {
+TEST_CASE("the friction found in seven seconds of a real TX40 agrees with its owner's documentation") {
     const Diagnosis diagnosis = diagnosis_of_tx40();
     for (std::size_t i = 0; i < documented_friction.size(); ++i) {
         const std::string where = "joint" + std::to_string(i + 1);

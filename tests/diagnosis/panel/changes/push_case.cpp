@@ -13,7 +13,7 @@ using namespace tools;
 namespace {
 
 constexpr double push_case_s = 80;
-constexpr double edge_s = 0.4; ///< of a wait, kept free before and after a push
+constexpr double edge_s = 0.4; ///< of a wait, without a push at its ends
 
 /// Postures near the middle of the setup's own task, with long waits between them.
 PointToPointTask waits_between(const PanelSetup& setup, Draw& draw) {

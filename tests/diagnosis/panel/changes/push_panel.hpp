@@ -13,7 +13,7 @@ struct HiddenPush {
     Eigen::Index joint = 0;
     double start_s = 0, end_s = 0;
     double peak = 0; ///< N·m
-    double held = 0; ///< N·m by which the joint's static friction can change
+    double held = 0; ///< N·m: largest change of the joint's static friction
 };
 
 /// An arm with friction at all joints that moves between postures and waits at each.

@@ -84,7 +84,7 @@ PanelRun draw_two(const PanelSetup& setup, const PanelMix& mix, Draw& draw, Pane
     for (int redraw = 0; redraw < most_redraws; ++redraw) {
         const Fitted second = draw_fitted(setup, names, mix, draw, result);
         if (first.effect.effect == second.effect.effect || first.effect.where == second.effect.where) {
-            ++result.redraws; // two kinds of friction on one joint could not be told apart
+            ++result.redraws; // two kinds of friction on one joint could not be distinguished
             continue;
         }
         try {

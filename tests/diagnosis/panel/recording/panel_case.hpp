@@ -27,10 +27,10 @@ struct HiddenEffect {
     /// contribution and the noise spectrum are known. It bounds the evidence of every method. 0 for the
     /// second of two effects.
     double evidence = 0;
-    std::string depends_on = {}; ///< input of which an effect outside the catalogue is a function
+    std::string depends_on = {}; ///< input of an effect outside the catalogue
 };
 
-/// A recording with its answer. A method under test may use `nominal`, `recording`, `outputs` and, if
+/// A recording with its true effects. A method under test may use `nominal`, `recording`, `outputs` and, if
 /// `torque_constants_known` is set, `torque_constants`.
 struct PanelCase {
     std::uint64_t seed = 0;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double reference_rate_hz = 50;
 constexpr double integration_rate_hz = 2000;
-/// Noise of an output that hardly varies, as a share of the noise of the largest output of its unit.
+/// Smallest noise of an output, as a share of the noise of the largest output of its unit.
 constexpr double floor_share = 0.05;
 
 JointVector zeros(const Robot& robot) {

@@ -17,7 +17,7 @@ struct EffectScore {
     bool named = false;                   ///< a finding has its name and place
     bool in_class = false;                ///< or its class of at most three causes contains it
     bool alone = false;                   ///< this finding has no ties
-    std::string named_as;                 ///< the finding that was reported instead, or empty
+    std::string named_as;                 ///< the finding reported instead, or empty
     std::optional<double> relative_error; ///< of the main parameter
     bool in_interval = false;
 
@@ -54,8 +54,8 @@ struct CaseScore {
     double seconds = 0;
 };
 
-/// Whether nothing is hidden or unknown, so that the recording differs from the model by noise only. The
-/// held-out error is then measured.
+/// Returns whether nothing is hidden or unknown, so that the recording differs from the model by noise only.
+/// The held-out error is then measured.
 bool is_exact(const PanelCase& panel_case);
 
 CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagnosis);

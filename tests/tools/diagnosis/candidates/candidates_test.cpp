@@ -67,7 +67,7 @@ TEST_CASE("the columns of encoder errors are the change of the rigid-body torque
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<Candidate> candidates = lasting_candidates(signals);
     constexpr double amount = 1e-4;
-    // `swing` is what the encoder measures; the true position is that minus the encoder's error.
+    // `swing` is the encoder's reading; the true position is the reading minus the encoder's error.
     const auto outputs_at = [&](const VectorXd& error, const VectorXd& error_rate,
                                 const VectorXd& error_acceleration) {
         RobotMotion truth = signals.measured.motion;
@@ -137,7 +137,7 @@ TEST_CASE("parameters have the signs and units of the catalogue") {
                                [](const Candidate& one) { return one.effect == "actuator_gain"; }));
 }
 
-TEST_CASE("an unnamed dependence is a function of inputs and at most as large as the rigid body's residual") {
+TEST_CASE("an unnamed dependence is a function of its inputs and not larger than the rigid body's residual") {
     const Robot robot = ur5();
     const DiagnosisSignals signals = signals_of(robot, OutputKind::joint_torque);
     const VectorXd velocity = signals.measured.motion.velocity.col(2);

@@ -130,8 +130,8 @@ TEST_CASE("a late payload must explain more than loads of short duration would")
         }
     }
     const double least = *std::ranges::min_element(explained);
-    // The threshold exceeds the evidence of a load, which is half of `explained`. It stays below 1.5 times
-    // that because the windows share one weight.
+    // The threshold exceeds the log-evidence of one load, `explained` / 2, but is less than 1.5 times as high
+    // because the windows share one weight.
     CHECK(demanded() > 0.5 * least);
     CHECK(demanded() < 0.8 * least);
 }

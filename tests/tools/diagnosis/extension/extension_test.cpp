@@ -225,7 +225,7 @@ TEST_CASE("columns of the same effect at the same place are merged into one") {
     CHECK(names.columns[1].deviation == 5);
 }
 
-TEST_CASE("the corrected robot has the extended model's torques and names what it cannot hold") {
+TEST_CASE("the corrected robot has the extended model's torques and lists what it cannot contain") {
     DFDYN_SEEDED_ENGINE(engine);
     DiagnosisWork work = work_of_swinging_ur5(engine);
     const DiagnosisSignals& signals = *work.signals;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cause of known size in each of three recordings. Its size in the joined recording is that of least
-// squares.
+// A cause of known size in each of three recordings; its size in the joined one is fitted by least squares.
 #include "tools/diagnosis/recordings/consistency.hpp"
 
 #include "tests/support/catch.hpp"
@@ -47,7 +46,7 @@ class Arm {
             diagnosis_signals(planar_arm(9.81), OutputKind::joint_torque, motion));
     }
 
-    /// Adds a cause that acts with these sizes on the second output, beside noise of 1.
+    /// Adds a cause with these sizes on the second output, in noise of standard deviation 1.
     Finding& add(const std::string& effect, const ByRecording& sizes) {
         const VectorXd column = random(), noise = random();
         VectorXd torque = noise;
@@ -102,7 +101,7 @@ void check_kept(const Finding& finding) {
     CHECK(finding.evidence == "evidence");
 }
 
-TEST_CASE("a cause that acts in one of three recordings only is doubted, with its size in each") {
+TEST_CASE("a cause that acts in only one of three recordings has a low confidence and its size in each") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::size_t acting : {0U, 1U, 2U}) {
         CAPTURE(acting);
@@ -113,7 +112,7 @@ TEST_CASE("a cause that acts in one of three recordings only is doubted, with it
         const Finding finding = arm.judged();
         CHECK(finding.confidence < 0.5);
         CHECK_THAT(finding.evidence, Catch::Matchers::StartsWith("evidence (the recordings contradict it"));
-        // The joined recording shows it with the part of its rows.
+        // In the joined recording its size is the rows' share.
         const double factor = 2000.0 / static_cast<double>(rows.at(acting));
         const std::vector<double> factors = factors_in(finding.evidence);
         REQUIRE(factors.size() == 3);
@@ -123,7 +122,8 @@ TEST_CASE("a cause that acts in one of three recordings only is doubted, with it
     }
 }
 
-TEST_CASE("a cause that acts with opposite signs is doubted, one that acts equally in all is kept") {
+TEST_CASE(
+    "a cause with opposite signs has a low confidence, one with equal size in all recordings keeps its own") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm opposite(engine);
     opposite.add("torque_ripple", {-2, 3, -2});
@@ -135,7 +135,7 @@ TEST_CASE("a cause that acts with opposite signs is doubted, one that acts equal
     }
 }
 
-TEST_CASE("contacts, loads of one recording and values of each recording contradict nothing") {
+TEST_CASE("contacts, loads of one recording and values of each recording are exempt from contradiction") {
     DFDYN_SEEDED_ENGINE(engine);
     const ByRecording sizes{0, 3, 0};
     Arm contact(engine);
@@ -149,7 +149,7 @@ TEST_CASE("contacts, loads of one recording and values of each recording contrad
     check_kept(friction.judged());
 }
 
-TEST_CASE("a recording in which a cause has hardly any share does not contradict it") {
+TEST_CASE("a recording with almost no contribution of a cause does not contradict it") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     Finding& finding = arm.add("torque_ripple", {3, -0.5, -0.5});

@@ -80,7 +80,7 @@ bool within(const json& interval, double value) {
     return double(interval.at(0)) <= value && value <= double(interval.at(1));
 }
 
-/// Payloads that are more likely than not.
+/// Returns the payloads that are more likely present than not.
 std::vector<json> probable_payloads(const json& diagnosis) {
     std::vector<json> payloads;
     for (const json& finding : diagnosis.at("findings")) {
@@ -91,7 +91,7 @@ std::vector<json> probable_payloads(const json& diagnosis) {
     return payloads;
 }
 
-/// Checks the value of a friction in all recordings and in each. Returns whether it has one in each.
+/// Checks the common value of a friction, and its value in each recording. Returns whether it has the latter.
 bool check_friction(const json& finding, double truth) {
     if (!finding.contains("by_recording")) {
         return false;
@@ -139,7 +139,7 @@ TEST_CASE("diagnose names the load of the second of two recordings, and the fric
             in_each += check_friction(finding, truth->second) ? 1 : 0;
         }
     }
-    CHECK(in_each >= 2); // a joint with another friction besides keeps the values of the joined recording
+    CHECK(in_each >= 2); // a joint with a further kind of friction keeps the values of the joined recording
 }
 
 TEST_CASE("diagnose names no payload in two recordings without one") {

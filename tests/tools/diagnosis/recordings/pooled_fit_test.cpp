@@ -44,7 +44,7 @@ VectorXd scattered(const VectorXd& value, const VectorXd& spread, std::mt19937_6
     return value + spread.cwiseProduct(VectorXd::NullaryExpr(parameters, [&] { return normal(engine); }));
 }
 
-TEST_CASE("deviations of common values and of those of each recording are right") {
+TEST_CASE("the standard deviations of the common values and of each recording's values are right") {
     DFDYN_SEEDED_ENGINE(engine);
     const VectorXd value = (VectorXd(parameters) << 5, -3, 0.5, 1).finished();
     const VectorXd spread = (VectorXd(parameters) << 0.5, 0.3, 0.2, 0.2).finished();
@@ -69,7 +69,7 @@ TEST_CASE("deviations of common values and of those of each recording are right"
     CHECK(own / (arms * parameters * static_cast<double>(recordings)) == Approx(1).epsilon(0.25));
 }
 
-TEST_CASE("spreads are found from many recordings and expected with two") {
+TEST_CASE("the spread follows the data with many recordings and the prior with two") {
     DFDYN_SEEDED_ENGINE(engine);
     const VectorXd value = (VectorXd(parameters) << 5, -3, 0.5, 1).finished();
     const VectorXd spread = (VectorXd(parameters) << 2, 0.1, 0.2, 1).finished();
@@ -122,7 +122,7 @@ TEST_CASE("a parameter that changes has its own value in each recording") {
     CHECK(fit.spread[3] < 0.4); // not taken for spread
 }
 
-TEST_CASE("the evidence is that of the marginal normal density") {
+TEST_CASE("the evidence is the marginal normal density") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> normal;
     PooledPrior prior = wide_prior();

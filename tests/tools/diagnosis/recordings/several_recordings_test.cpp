@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three motions of one simulated UR5: bristle friction, rotors, a wrong link, and a load in one of the
-// motions. The simulator integrates the arm; it knows nothing of the columns that are fitted.
+// motions. The simulator integrates the arm, independently of the fitted columns.
 #include "tools/diagnosis/recordings/name_from_recordings.hpp"
 
 #include "tests/support/catch.hpp"
@@ -24,7 +24,7 @@ using Eigen::Index;
 constexpr std::size_t loaded = 1; ///< recording with a load
 const Payload load{0, 2.0, {0.05, 0.02, 0.04}};
 
-/// A scenario of 25 s. Each number gives another motion.
+/// A scenario of 25 s. Each number gives a different motion.
 Scenario scenario_of(const Robot& robot, std::size_t number) {
     constexpr std::array highest_hz{0.6, 0.3, 0.45};
     Scenario scenario = read_scenario(DFDYN_TEST_DATA_DIR "/scenarios/ur5_multisine.json", robot);
@@ -53,7 +53,7 @@ Recording recording_of(const Robot& robot, const Scenario& scenario, const std::
     return recording;
 }
 
-/// Three motions. `wrong_link`: the forearm is 1 kg heavier, with its centre 15 cm and 5 cm elsewhere.
+/// Three motions. `wrong_link`: the forearm is 1 kg heavier, with its centre displaced by 15 cm and 5 cm.
 std::vector<Recording> motions(const Robot& robot, bool with_load, bool wrong_link) {
     std::vector<Recording> recordings;
     for (std::size_t number = 0; number < 3; ++number) {
@@ -73,7 +73,7 @@ SeveralRecordings answer_of(const Robot& robot, const std::vector<Recording>& re
     return fit_recordings(robot, recordings, {}, loads_differ);
 }
 
-TEST_CASE("a wrong link and the load of one recording of three are told apart, and friction and rotors are "
+TEST_CASE("a wrong link and a load in one of three recordings are distinguished, with friction and rotors "
           "within their intervals") {
     INFO("DFDYN_TEST_SEED=" << seed());
     const Robot robot = ur5();
@@ -109,7 +109,7 @@ TEST_CASE("a wrong link and the load of one recording of three are told apart, a
     CHECK(held >= 16); // of 18
 }
 
-TEST_CASE("no load is named where there is none, and what is taken off is the load's torque") {
+TEST_CASE("no load is named without one, and the subtracted torque is the load's") {
     INFO("DFDYN_TEST_SEED=" << seed());
     const Robot robot = ur5();
     const std::vector<Recording> empty = motions(robot, false, false);
@@ -118,7 +118,7 @@ TEST_CASE("no load is named where there is none, and what is taken off is the lo
 
     std::vector<Recording> carried = motions(robot, true, false);
     for (const RecordingLoad& one : answer_of(robot, carried, false).answer.loads) {
-        CHECK_FALSE(one.recording.has_value()); // it was not said to change
+        CHECK_FALSE(one.recording.has_value()); // `loads_differ` is false
     }
     const SeveralRecordings several = answer_of(robot, carried, true);
     REQUIRE(several.answer.loads.size() == 1);
@@ -134,7 +134,7 @@ TEST_CASE("no load is named where there is none, and what is taken off is the lo
     CHECK((taken.topRows(torque.rows()) - torque).norm() < 0.15 * torque.norm());
 }
 
-TEST_CASE("a load that all recordings have is one load, in none alone") {
+TEST_CASE("a load in all recordings is one common load") {
     INFO("DFDYN_TEST_SEED=" << seed());
     const Robot robot = ur5();
     std::vector<Recording> recordings;
@@ -154,7 +154,7 @@ TEST_CASE("a load that all recordings have is one load, in none alone") {
     }
 }
 
-TEST_CASE("one recording and wrenches have no answer") {
+TEST_CASE("a single recording and wrenches have no common fit") {
     const Robot robot = ur5();
     const Recording one = recording_of(robot, scenario_of(robot, 0), "one.csv");
     CHECK_FALSE(answer_of(robot, {one}, false).answered());
@@ -163,7 +163,7 @@ TEST_CASE("one recording and wrenches have no answer") {
     CHECK_FALSE(fit_recordings(robot, {one, one}, wrench, false).answered());
 }
 
-/// The recording with dry friction added: `part` of what each joint of the scenario has.
+/// Adds dry friction to the recording: `part` of each joint's in the scenario.
 Recording with_more_dry_friction(Recording recording, double part) {
     const std::vector<double> position = recording.position.values;
     for (std::size_t value = 6; value < position.size(); ++value) {
@@ -173,9 +173,9 @@ Recording with_more_dry_friction(Recording recording, double part) {
     return recording;
 }
 
-TEST_CASE("the same recording twice has no differences, and another friction is one") {
+TEST_CASE("the same recording twice gives no difference, and a changed friction gives one") {
     INFO("DFDYN_TEST_SEED=" << seed());
-    constexpr double expected_spread = 0.05; // of dry friction, without recordings that show it
+    constexpr double expected_spread = 0.05; // prior spread of dry friction
     constexpr double more = 0.3;
     const Robot robot = ur5();
     const Recording one = recording_of(robot, scenario_of(robot, 0), "one.csv");

@@ -25,7 +25,7 @@ struct SwingingJoint {
     VectorXd velocity = (1.3 * measured.time_s.array()).sin();
     VectorXd direction = velocity.array().sign();
 
-    /// Noise of deviation 1 that remembers half a second, as the residuals of real arms do.
+    /// Noise of standard deviation 1, correlated over half a second like the residuals of real arms.
     VectorXd noise(std::mt19937_64& engine) const {
         constexpr double memory = 0.98; // per row
         std::normal_distribution<double> normal;
@@ -76,7 +76,7 @@ struct SwingingJoint {
 
 using namespace robust_values_test;
 
-TEST_CASE("values have the errors that they state where the effects are right") {
+TEST_CASE("values have the stated standard deviations if the effects are exact") {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int trials = 200;
     const SwingingJoint joint;
@@ -92,12 +92,13 @@ TEST_CASE("values have the errors that they state where the effects are right") 
     CHECK(distance < 2.9); // intervals are wider by 1.7: reach_of_95()
 }
 
-TEST_CASE("dry friction that builds up after a reversal keeps its level and gets no dependence on load") {
+TEST_CASE(
+    "dry friction that builds up after a reversal keeps its level and seldom gets a dependence on load") {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr double level = 20;
     const SwingingJoint joint;
     const Eigen::ArrayXd load = (0.37 * joint.measured.time_s.array()).cos();
-    // sharper at a higher load, as no effect is
+    // steeper at a higher load, which no effect of the catalogue models
     const VectorXd friction = level * ((30 + 21 * load) * joint.velocity.array()).tanh();
     const VectorXd by_load = load * joint.direction.array();
     constexpr int trials = 30;
@@ -114,5 +115,5 @@ TEST_CASE("dry friction that builds up after a reversal keeps its level and gets
     }
     CHECK(by_noise.mean() < 0.6 * level);
     CHECK(values.mean() == Approx(level).epsilon(0.1));
-    CHECK(with_load < trials / 2); // by the weights of the noise: always
+    CHECK(with_load < trials / 2); // with the weights of the noise: always
 }

@@ -147,7 +147,7 @@ TEST_CASE("a push as large as static friction has a probability of one half") {
     CHECK(push.probability() == Approx(0.97725).epsilon(1e-4));
 }
 
-TEST_CASE("a torque that a cause predicts at rest but nobody measured is not a push") {
+TEST_CASE("a torque at rest that a cause predicts but that was not measured is not a push") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = standing_arm();
     const VectorXd said = pulse_series(signals, {8, 8.75, 0.2});

@@ -68,8 +68,8 @@ double friction_error(const std::vector<MovingFit>& fits) {
     return sum;
 }
 
-TEST_CASE("the friction of an arm with wrong links is found within its deviations, by less error than each "
-          "joint alone") {
+TEST_CASE("fit_arm finds the friction of an arm with wrong links within its deviations, more accurately than "
+          "joint by joint") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     constexpr int arms = 4;
@@ -97,11 +97,11 @@ TEST_CASE("the friction of an arm with wrong links is found within its deviation
     CHECK(per_value < 2);
 }
 
-TEST_CASE("a wrong torque constant is told from wrong links") {
+TEST_CASE("a wrong torque constant is distinguished from wrong links") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     MatrixXd torques = measured_torques(signals, 0.3, engine);
-    torques.col(1) *= 1.6; // joint 2 carries weight
+    torques.col(1) *= 1.6; // joint 2 is loaded by gravity
     const ArmFit fit = fit_arm(signals, torques, plain_fits(signals, torques), true);
     for (std::size_t joint = 0; joint < fit.joints.size(); ++joint) {
         CAPTURE(joint);
@@ -110,7 +110,7 @@ TEST_CASE("a wrong torque constant is told from wrong links") {
     CHECK(fit.joints[1].values[0] == Approx(1.6).epsilon(0.1));
 }
 
-TEST_CASE("a joint that hardly moves changes nothing at the others") {
+TEST_CASE("a joint that hardly moves does not affect the other joints") {
     DFDYN_SEEDED_ENGINE(engine);
     DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     signals.measured.motion.position.col(5).setConstant(0.1);

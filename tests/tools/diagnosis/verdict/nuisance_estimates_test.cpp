@@ -78,7 +78,7 @@ TEST_CASE("unknown torque constants are estimated and have no upper bound where 
     CHECK(parameter(1).value == Approx(1 / 0.12));
     CHECK(std::isinf(parameter(3).high));
     CHECK(parameter(3).low > 0);
-    CHECK(parameter(5).value == Approx(1 / 0.2)); // a motor never turns the wrong way
+    CHECK(parameter(5).value == Approx(1 / 0.2)); // a gain is never negative
 }
 
 } // namespace granted_test

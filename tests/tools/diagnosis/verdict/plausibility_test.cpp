@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A recording of an exact UR5, which each test below spoils in one way.
+/// A recording of an exact UR5. Each test below adds one mistake.
 struct CleanRecording {
     double duration_s = 30, rate_hz = 100;
     MatrixXd position, torque;

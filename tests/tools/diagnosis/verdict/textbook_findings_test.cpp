@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What plain least squares names at a joint where it errs less than the causes found.
+// Findings of plain least squares at a joint where its error is smaller than that of the causes found.
 #include "tools/diagnosis/verdict/textbook_findings.hpp"
 
 #include "tests/support/catch.hpp"
@@ -37,7 +37,7 @@ VectorXd slow_noise(Index rows, double deviation, std::mt19937_64& engine) {
     return noise;
 }
 
-/// A UR5 with friction at joint 1, for which nothing was found, and plain least squares there.
+/// A UR5 with friction at joint 1 that the search missed, and plain least squares there.
 DiagnosisWork work_with_friction(std::mt19937_64& engine, double noise) {
     auto signals = std::make_shared<DiagnosisSignals>(signals_of(ur5(), OutputKind::joint_torque));
     DiagnosisWork work;
@@ -71,7 +71,8 @@ const Finding* found(const DiagnosisWork& work, const std::string& effect, const
     return at == findings.end() ? nullptr : &*at;
 }
 
-TEST_CASE("where plain least squares errs less its friction is named and other causes there are unlikely") {
+TEST_CASE("plain least squares with the smaller error names its friction and makes other causes at the joint "
+          "unlikely") {
     DFDYN_SEEDED_ENGINE(engine);
     DiagnosisWork work = work_with_friction(engine, 0.3);
     work.diagnosis.findings = {finding("presliding_hysteresis", "joint1", 0.9),
@@ -99,7 +100,7 @@ TEST_CASE("where plain least squares errs less its friction is named and other c
     CHECK((work.extended.col(1) - work.signals->nominal.col(1)).norm() == 0);
 }
 
-TEST_CASE("a joint that moves for a few seconds keeps what the search found") {
+TEST_CASE("a joint that moves for a few seconds keeps the findings of the search") {
     DFDYN_SEEDED_ENGINE(engine);
     DiagnosisWork work = work_with_friction(engine, 0.3);
     DiagnosisSignals signals = *work.signals;
@@ -112,7 +113,7 @@ TEST_CASE("a joint that moves for a few seconds keeps what the search found") {
     CHECK(work.diagnosis.findings.front().confidence == 0.9);
 }
 
-TEST_CASE("a gain that least squares shows is not doubted but a delay beside it is") {
+TEST_CASE("least squares confirms a gain and lowers the confidence of a delay at the same actuator") {
     DFDYN_SEEDED_ENGINE(engine);
     DiagnosisWork work = work_with_friction(engine, 0.3);
     const DiagnosisSignals& signals = *work.signals;
@@ -127,7 +128,7 @@ TEST_CASE("a gain that least squares shows is not doubted but a delay beside it 
     CHECK(work.diagnosis.textbook(0, 1) == Approx(1.4).margin(0.02));
 }
 
-TEST_CASE("a rigid body in proportion to the acceleration does not become a rotor") {
+TEST_CASE("a rigid-body torque proportional to the acceleration gives no rotor inertia") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const VectorXd rigid = 3 * signals.measured.motion.acceleration.col(0); // as of a prismatic joint
@@ -140,7 +141,7 @@ TEST_CASE("a rigid body in proportion to the acceleration does not become a roto
     }
 }
 
-TEST_CASE("the intervals of plain least squares hold the truth under slow noise") {
+TEST_CASE("the intervals of plain least squares contain the true values under slow noise") {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int runs = 100;
     int dry_held = 0;
@@ -192,7 +193,8 @@ TEST_CASE("where no effect is exactly right at half of the joints, the friction 
     CHECK(found(work, "presliding_hysteresis", "joint3")->confidence < 0.5);
     CHECK(found(work, "external_contact", "joint3")->confidence == 0.9); // an event
     CHECK(found(work, "payload", "tool")->confidence == 0.9);            // not of a joint
-    CHECK(work.extended.isApprox(signals.nominal)); // the model that errs less, which was not asked here
+    CHECK(
+        work.extended.isApprox(signals.nominal)); // the model with the smaller error was not determined here
 
     exact.fitted_effects.inexact = {true, true, false, false, false, false};
     name_by_least_squares(exact);

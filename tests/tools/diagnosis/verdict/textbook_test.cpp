@@ -29,17 +29,17 @@ TEST_CASE("plain least squares finds gain, inertia, friction and offset of each 
                                2 * signals.direction(joint);
         measured.col(joint).array() += 0.25;
     }
-    const Index fitted = signals.rows() / 2; // the rest is predicted
+    const Index fitted = signals.rows() / 2; // the other half is predicted
     const TextbookFit fit = textbook_fit(signals, measured, signals.nominal, fitted);
     CHECK((fit.prediction - measured).cwiseAbs().maxCoeff() < 1e-3);
-    const VectorXd shoulder = fit.coefficients.col(1); // carries weight and reverses
+    const VectorXd shoulder = fit.coefficients.col(1); // loaded by gravity, with reversals
     CHECK(shoulder[0] == Approx(0.9).margin(1e-3));
     CHECK(shoulder[1] == Approx(0.5).margin(5e-3));
     CHECK(shoulder[2] == Approx(3).margin(5e-3));
     CHECK(shoulder[3] == Approx(2).margin(5e-3));
 }
 
-TEST_CASE("plain least squares replaces causes that err more, and the diagnosis names the output") {
+TEST_CASE("plain least squares replaces causes with a larger error, and the diagnosis names the output") {
     DFDYN_SEEDED_ENGINE(engine);
     auto signals = std::make_shared<DiagnosisSignals>(signals_of(ur5(), OutputKind::joint_torque));
     DiagnosisWork work;
@@ -59,12 +59,13 @@ TEST_CASE("plain least squares replaces causes that err more, and the diagnosis 
     CHECK(diagnosis.by_least_squares[0]);
     CHECK(diagnosis.extended.rms[0] == diagnosis.least_squares.rms[0]);
     CHECK(diagnosis.extended.rms[0] < 0.1 * diagnosis.nominal.rms[0]);
-    CHECK_FALSE(diagnosis.by_least_squares[1]); // nothing there to be found
+    CHECK_FALSE(diagnosis.by_least_squares[1]); // without effects
     REQUIRE(diagnosis.suspicions.size() == 1);
     CHECK_THAT(diagnosis.suspicions.front().text, Catch::Matchers::ContainsSubstring("at tau1 the causes"));
 }
 
-TEST_CASE("nothing is likely at an output that ends above its own deviation, or that reduces no error") {
+TEST_CASE(
+    "no cause is likely if the error exceeds the output's standard deviation or if it reduces no error") {
     Diagnosis diagnosis;
     diagnosis.extended.nrmse = Eigen::Vector2d(0.3, 1.2);
     Finding right;
