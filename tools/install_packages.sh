@@ -87,7 +87,7 @@ apt_install() {
 install_optional() {
     local package
     for package in "$@"; do
-        is_installed "$package" || apt_install "$package" || echo "not to be had here: $package"
+        is_installed "$package" || apt_install "$package" || echo "not available here: $package"
     done
 }
 
@@ -118,7 +118,7 @@ virtual-time) packages=("${virtual_time_packages[@]}") ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then
-    echo "not a Debian system: make sure that what these packages hold is installed: ${packages[*]%%:*}" >&2
+    echo "not a Debian system: make sure that the content of these packages is installed: ${packages[*]%%:*}" >&2
     exit 0
 fi
 

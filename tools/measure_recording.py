@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""measure_recording.py DFDYN [PICTURES]: spoils recordings of a real UR5 (125 Hz) in the ways that recordings are spoiled, trains a model on each,
-and predicts, without learning, the last 30 % of the recording as it was. Prints the errors of docs/guide/recording.md and draws its pictures
+"""measure_recording.py DFDYN [PICTURES]: adds common faults to recordings of a real UR5 (125 Hz), trains a model on each, and predicts,
+without learning, the last 30 % of the original recording. Prints the errors of docs/guide/recording.md and draws its pictures
 (with matplotlib). The error is the mean over the outputs of rms(error) / std(measured)."""
 
 import json

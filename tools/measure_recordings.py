@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""measure_recordings.py DFDYN [FOLDER] [SPLITS]: answers one question with several recordings of one UR5, and prints how far the answers of two
-disjoint halves of its thirteen recordings agree: values, intervals and names, for SPLITS (1) random splits. FOLDER (build/recordings) receives the
-diagnoses. The tables are those of docs/results/diagnosis-cases.md."""
+"""measure_recordings.py DFDYN [FOLDER] [SPLITS]: diagnoses several recordings of one UR5 together, and prints the agreement of two disjoint
+halves of its thirteen recordings: values, intervals and names, for SPLITS (1) random splits. FOLDER (build/recordings) receives the
+diagnoses. Prints the tables of docs/results/diagnosis-cases.md."""
 
 import pathlib
 import random
@@ -25,7 +25,7 @@ def values_of(diagnosis, effect):
 
 
 def compare(first, second, effect):
-    """Returns the differences relative to the mean, and how many intervals hold the other half's value, of how many."""
+    """Returns the differences relative to the mean, and the number of intervals that contain the other half's value, and their number."""
     a, b = values_of(first, effect), values_of(second, effect)
     both = [joint for joint in JOINTS if joint in a and joint in b]
     apart = [abs(a[joint][0] - b[joint][0]) / abs(a[joint][0] + b[joint][0]) * 200 for joint in both]
@@ -71,7 +71,7 @@ def main():
         for effect, row in rows.items():
             for place, more in enumerate(compare(*halves, effect)):
                 row[place] = row[place] + more
-    print("\n| | median difference of two halves (%) | intervals that hold the other half's value |\n| --- | ---: | ---: |")
+    print("\n| | median difference of two halves (%) | intervals that contain the other half's value |\n| --- | ---: | ---: |")
     for effect, (apart, held, count) in rows.items():
         print(f"| {effect.replace('_', ' ')} | {statistics.median(apart):.0f} | {held} of {count} |")
     print(f"\nnamed causes of two halves, without contacts, agree by a Jaccard index of {statistics.mean(names):.2f}; loads named in {2 * splits} halves: {loads}")

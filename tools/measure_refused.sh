@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# measure_refused.sh DFDYN OUT: how many good samples of one run a model refuses that was trained on another run of the same arm, in
-# which nobody touched it. Trains NP, P and SPK on runs of the servo and of the UR5, replays the others, and prints a table: the share
+# measure_refused.sh DFDYN OUT: measures the share of good samples of one run that a model of another run refuses; nobody touched the arm
+# in either. Trains NP, P and SPK on runs of the servo and of the UR5, replays the others, and prints a table: the share
 # refused, and the normalised error with the gate and without it; then how many refuse less than 0.1 %. Writes models and replays into OUT.
 set -euo pipefail
 dfdyn=${1:?usage: measure_refused.sh DFDYN OUT}

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""measure_repeats.py DFDYN [FOLDER]: diagnoses every recording of one UR5 that moves, with the same torque constants, and prints the tables of
-docs/results/diagnosis-cases.md: each joint's friction by run, how much it scatters beside plain least squares, how many intervals hold the mean
-of all runs, and how far the named causes agree (Jaccard index). FOLDER (build/repeats) receives the diagnoses."""
+"""measure_repeats.py DFDYN [FOLDER]: diagnoses every recording of one UR5 with motion, with the same torque constants, and prints the tables of
+docs/results/diagnosis-cases.md: each joint's friction by run, its scatter compared with plain least squares, the number of intervals that
+contain the mean of all runs, and the agreement of the named causes (Jaccard index). FOLDER (build/repeats) receives the diagnoses."""
 
 import csv
 import itertools
@@ -69,7 +69,7 @@ def jaccard(sets):
 
 
 def friction_table(runs, moving, effect, coefficient):
-    """Prints the values of one kind of friction. Returns how many intervals hold the mean of the runs, of how many.
+    """Prints the values of one kind of friction. Returns the number of intervals that contain the mean of the runs, and their number.
     `moving`: the joints that move in each run."""
     print(f"\n| joint | {' | '.join(runs)} | scatter (%) | of least squares |")
     print("| --- |" + " ---: |" * (len(runs) + 2))
@@ -109,7 +109,7 @@ def main():
     print(f"{len(runs)} runs; refused: {', '.join(refused) or 'none'}")
     counts = [friction_table(runs, moving, *one) for one in FRICTION.items()]
     held, named = (sum(column) for column in zip(*counts))
-    print(f"\nof {named} values of friction {held} have an interval that holds the mean of the runs")
+    print(f"\nof {named} values of friction {held} have an interval that contains the mean of the runs")
     causes = [named_causes(run) for run in runs.values()]
     print(f"named causes agree by a Jaccard index of {jaccard(causes):.2f}, mean of all pairs of runs")
 

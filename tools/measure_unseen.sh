@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]: how well a model that learned one motion predicts another of the same arm, which it has not seen.
-# Trains NP, P and SPK on recording A, then replays recording B with each and with their combination: frozen, so that nothing of B
-# reaches them, and learning. Prints one table (Markdown) of normalised errors and of shares within two standard deviations, with the
+# measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]: measures the predictions of models on a motion that they have not learned.
+# Trains NP, P and SPK on recording A of an arm, then replays recording B with each and with their combination: frozen (without
+# learning), and learning. Prints one table (Markdown) of normalised errors and of shares within two standard deviations, with the
 # ratio of the combination to its best member, persistence, AR(2), rigid bodies with friction and a constant. Writes models and replays
 # into OUT.
-# --quick: only the two recordings that chose no setting of the program.
+# --quick: only the two recordings that were not used to choose settings of the program.
 set -euo pipefail
 usage='usage: measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]'
 quick=no
@@ -54,7 +54,7 @@ opponent() {
     line "$3" "$(figures "$1" "  $2")" "- - - - - -"
 }
 
-# ratio NAME KIND: the row of the combination's errors, each divided by that of its best member.
+# ratio NAME KIND: the row of the combination's errors, each divided by its best member's error.
 ratio() {
     local structure ratios
     ratios=$(for structure in NP P SPK combination; do

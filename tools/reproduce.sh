@@ -4,7 +4,7 @@
 # iCub arm, runs the paper's experiment on them and on recordings of a real UR5, and writes docs/results/reproduction.md with the
 # verdicts; comparisons, tables and all pictures are written into build/reproduction.
 # A run that was interrupted continues.
-# --quick: one draw, few features and rows, into build/reproduction only; shows that everything runs; its figures mean nothing.
+# --quick: one draw, few features and rows, into build/reproduction only; a functional test, whose figures are meaningless.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -136,6 +136,6 @@ echo
 echo "Done in $SECONDS s: $page"
 echo "  $out/$kind/PLAN/report.html  the same as pages, PLAN: ${plans[*]}"
 [[ $failed -eq 0 ]] || {
-    echo "Some cases could not be done: see above." >&2
+    echo "Some cases failed: see above." >&2
     exit 1
 }

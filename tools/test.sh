@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=$(nproc)
 log_dir=build/logs
 
-# All but the header that make_ur5_model.sh writes.
+# All except the header that make_ur5_model.sh writes.
 all_sources() {
     find firmware_lib hal tools examples tests '(' -name '*.hpp' -o -name '*.cpp' ')' ! -name ur5_model.hpp -print0
 }
