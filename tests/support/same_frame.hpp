@@ -15,7 +15,7 @@ inline std::string content(hal::Frame frame) {
     return std::string(hal::write_candump_line(frame, "bus", hal::StampDecimals::microseconds, text));
 }
 
-/// Whether all members are equal.
+/// Returns whether all members are equal.
 inline bool same(const hal::Frame& one, const hal::Frame& other) {
     return one.stamp_ns == other.stamp_ns && one.id == other.id && one.extended == other.extended &&
            one.remote == other.remote && one.error == other.error && one.fd == other.fd &&

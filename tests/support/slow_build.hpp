@@ -3,7 +3,7 @@
 
 namespace dfdyn::tests {
 
-/// Whether this build checks every access and is about twenty times slower, so that long tests are shortened.
+/// True if this build checks every access and is about twenty times slower, so that long tests are shortened.
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr bool slow_build = true;
 #elif defined(__has_feature)

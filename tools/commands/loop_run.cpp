@@ -39,7 +39,7 @@ struct LoopParts {
 };
 
 LoopParts read_parts(const LoopOptions& options) {
-    // A run may continue what it restores, and save it in the same place.
+    // A run may restore and save the learned state in the same file.
     check_outputs({options.saved}, {options.robot, options.scenario, options.model, options.bus});
     LoopParts parts{read_scenario_robot(options.robot, options.scenario), {}, {}, {}};
     parts.scenario = read_scenario(options.scenario, parts.robot);

@@ -32,13 +32,13 @@ struct ReplayOptions {
     InterfaceOptions can;
 
     bool live() const { return !can.interface.empty(); }
-    /// Returns the table of all ticks beside the page, for a page that has only a part of them: the output,
-    /// if it is in the page's folder.
+    /// Returns the file of all ticks to which a thinned page links: the output, if it is in the page's
+    /// folder; otherwise R.ticks.csv there.
     std::filesystem::path full_data() const {
         std::error_code ignored;
         if (report.empty() || (std::filesystem::exists(report, ignored) &&
                                !std::filesystem::is_regular_file(report, ignored))) {
-            return {}; // a pipe has no place for a file beside it
+            return {}; // a pipe has no folder for a further file
         }
         return !csv.empty() && in_same_folder(csv, report)
                    ? csv

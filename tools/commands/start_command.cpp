@@ -55,7 +55,7 @@ struct StartOptions {
     bool json = false;
 };
 
-/// What is known of the arm before training.
+/// Recordings and description of the arm before training.
 struct Arm {
     std::optional<Robot> robot;
     OutputKind outputs = OutputKind::joint_torque;

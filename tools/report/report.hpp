@@ -90,9 +90,9 @@ bool has_thinned_page(const Report& report);
 
 /// Returns the report as one HTML page without external files or network access. Throws std::invalid_argument
 /// with the field's name if lengths or times violate the contracts above. Cost O(ticks * series). Above
-/// `most_report_ticks` ticks, the page has those with the extremes of each output and its error in intervals
-/// of equal length, and those at gaps, and states this: at most about 16 bytes per kept tick and output, and
-/// 150 kB for the page itself.
+/// `most_report_ticks` ticks, the page contains the extremes of each output and its error in intervals of
+/// equal length, and the ticks at gaps, and states this. Size: at most about 16 bytes per kept tick and
+/// output, and 150 kB for the page itself.
 std::string render_report(const Report& report);
 
 } // namespace dfdyn::tools

@@ -90,11 +90,10 @@ SetupFindings check_output_size(const ArmRecording& arm);
 /// some output is not explained, otherwise 2,000.
 SetupFindings check_readings(const ArmRecording& arm);
 
-/// Detects a robot's file that does not belong to the recording: a mistake if smooth functions of the motion
-/// explain the outputs of the gravity-loaded joints far better than the file's rigid body with any payload,
-/// whose residual is large. Each joint is compared in the rows in which it moves, if they are enough for this
-/// number of functions. Joints without gravity in the file, and wrenches, are not compared. Cost: T (8 n)^2
-/// per output.
+/// Detects a robot's file that does not belong to the recording: a mistake if the file's rigid body with any
+/// payload leaves a large residual at the gravity-loaded joints, and smooth functions of the motion a far
+/// smaller one. Each joint is compared in the rows in which it moves, if they are enough for this number of
+/// functions. Joints without gravity in the file, and wrenches, are not compared. Cost: T (8 n)^2 per output.
 SetupFindings check_robot_match(const ArmRecording& arm);
 
 } // namespace dfdyn::tools

@@ -22,14 +22,14 @@ using ColumnPatterns = std::map<std::string, std::string>;
 ColumnPatterns parse_column_patterns(std::string_view text);
 
 /// Returns the name that a column has for the program (`t`, `q1`, `fx`), per column of the header. A column
-/// keeps its own name if no pattern is given for its quantity; otherwise its name is empty, as that of all
-/// columns that no pattern matches. Without a pattern for `t` and a column `t`, the time is the first of
-/// `time`, `stamp` and `timestamp` that the header has.
+/// keeps its own name if its quantity has no pattern. All other columns that no pattern matches have an empty
+/// name. Without a pattern for `t` and a column `t`, the time is the first of `time`, `stamp` and `timestamp`
+/// that the header has.
 ///
-/// Joints are in the order of `joint_names` if the columns are named by them, otherwise of their numbers,
-/// which must follow each other, otherwise, if `joint_names` is empty, as in the header. Throws InputError,
-/// starting with `where`, if a pattern matches no column, the joints are ambiguous or incomplete, or a column
-/// has two quantities.
+/// Joints are in the order of `joint_names` if the columns have these names; otherwise in the order of their
+/// consecutive numbers. With empty `joint_names`, columns without numbers keep the order of the header.
+/// Throws InputError, starting with `where`, if a pattern matches no column, the joints are ambiguous or
+/// incomplete, or a column has two quantities.
 std::vector<std::string> column_roles(std::span<const std::string> columns, const ColumnPatterns& patterns,
                                       std::span<const std::string> joint_names, const std::string& where);
 

@@ -29,8 +29,8 @@ struct TimeValue {
     std::int64_t nanoseconds = 0;
 };
 
-/// Returns the unit (s) of the times of a recording with this first time, which are seconds unless it can
-/// only be a time since 1970 in ms, µs or ns: from 1e11, 1e14 and 1e17 on.
+/// Returns the unit (s) of a recording's times from its first time: seconds, or from 1e11, 1e14 and 1e17 on
+/// ms, µs and ns since 1970.
 double likely_time_unit(double first_time);
 
 /// Returns the time with the value `value` and the text `text`, in units of `unit_s`; exact if the text is a

@@ -5,8 +5,8 @@
 
 namespace dfdyn::tools {
 
-/// Returns the absolute path with its links followed, as far as it leads to files (a pipe of the shell has no
-/// place), and without a separator at its end. Paths of one file or folder have the same place.
+/// Returns the absolute path without links and without a separator at its end; a pipe of the shell is not
+/// followed. Paths of one file or folder have the same place.
 std::filesystem::path place_in_file_system(const std::filesystem::path& path);
 
 /// Returns whether the two files are named in the same folder.

@@ -40,10 +40,10 @@ struct PooledFit {
 };
 
 /// Fits the random-effects model: in recording r the parameters are value + d_r, where d_r is normal with the
-/// spread of each parameter (N. Laird and J. Ware, 1982). The spread is the mode of its posterior by
-/// expectation maximisation, with an inverse chi-squared prior at the expected one that is worth three
+/// spread of each parameter (N. Laird and J. Ware, 1982). The spread is the mode of its posterior, found by
+/// expectation maximisation. Its inverse chi-squared prior at the expected spread has the weight of three
 /// recordings of one parameter. `start`: ratios of a similar fit, or empty. Throws std::logic_error without
-/// recordings. Cost: O(p³) per recording and iteration, of which there are 5 to 60.
+/// recordings. Cost: O(p³) per recording and iteration (5 to 60).
 PooledFit pool(const std::vector<RecordingInformation>& recordings, const PooledPrior& prior,
                const Eigen::VectorXd& start = {});
 

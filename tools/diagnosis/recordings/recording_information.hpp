@@ -16,9 +16,9 @@ namespace dfdyn::tools {
 double correlated_rows(const Eigen::VectorXd& residual, const Eigen::VectorXd& weight, double rate_hz);
 
 /// Returns the normal equations of one recording for an arm's unknowns. `measured`: T x n, joint torques.
-/// `terms`: T x 5 per joint, the columns of plain least squares. The noise of each joint is that of its own
-/// residual, with its correlation time; residuals beyond three deviations, such as those of a push, have less
-/// weight (P. Huber, 1964). Cost: O((10 n)² T n).
+/// `terms`: T x 5 per joint, the columns of plain least squares. The noise of each joint is its own residual,
+/// with its correlation time; residuals beyond three deviations, such as those of a push, have less weight
+/// (P. Huber, 1964). Cost: O((10 n)² T n).
 RecordingInformation information_of(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                                     const std::vector<Eigen::MatrixXd>& terms);
 

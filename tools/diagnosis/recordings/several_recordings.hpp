@@ -23,7 +23,7 @@ struct SeveralRecordings {
 
 /// Fits several recordings at once, each with its own clock, filters and noise. There is no fit for fewer
 /// than two recordings and for wrenches. Recordings without a segment that is long enough are left out. Cost:
-/// that of `information_of` per recording and of `ask_recordings`.
+/// `information_of` per recording, and `ask_recordings`.
 SeveralRecordings fit_recordings(const Robot& robot, const std::vector<Recording>& recordings,
                                  const DiagnosisOptions& options, bool loads_differ);
 

@@ -27,13 +27,12 @@ struct StationaryContact {
 
 /// Returns contacts at joints during standstill.
 ///
-/// The regression excludes rows in which a joint is stationary and its output deviates from the rigid body
-/// (`joint_row_weight`, which `signals.measured.weight` must contain), because static friction is
-/// undetermined there. It is bounded, however: without a contact, the torque of a stationary joint changes by
-/// at most twice its dry friction, in addition to the influence of the moving links. The function returns the
-/// pulses that exceed this bound, both in the residual of the rigid body for `measured` (T x m) and in the
-/// residual after the fitted effects, `rest` (T x m). A cause identified during motion may be wrong during
-/// standstill.
+/// Static friction is undetermined, so that the regression excludes rows in which a joint is stationary and
+/// its output deviates from the rigid body (`joint_row_weight`, contained in `signals.measured.weight`). It
+/// is bounded, however: without a contact, the torque of a stationary joint changes by at most twice its dry
+/// friction, in addition to the influence of the moving links. The function returns the pulses that exceed
+/// this bound in two residuals: of the rigid body for `measured` (T x m), and after the fitted effects,
+/// `rest` (T x m). A cause identified during motion may be wrong during standstill.
 ///
 /// Limits:
 /// - A contact that persists is not detected, because static friction can leave a step, too.

@@ -11,8 +11,8 @@ inline constexpr double deviations_of_95 = 1.96; ///< on either side
 /// same evidence.
 std::vector<FoundParameter> found_parameters(const FittedEffects& fitted_effects, std::size_t chosen_index);
 
-/// Returns half the width of a parameter's 95 % interval, from its standard deviation in the regression (for
-/// noise with the assumed weights) and the difference `effect` from its null value.
+/// Returns half the width of a parameter's 95 % interval. `deviation`: its standard deviation in the
+/// regression, for noise with the assumed weights; `effect`: difference from its null value.
 double reach_of_95(double deviation, double effect);
 
 /// Returns a parameter with its 95 % interval, from its standard deviation.

@@ -23,7 +23,7 @@ struct Case {
     std::string model = structures::NP.name;
     InputKind input = InputKind::DFR;
     std::string hyper = "ML";           ///< ML, CV
-    std::string physics_input = "same"; ///< input of the physics: that of the features, or separate filters
+    std::string physics_input = "same"; ///< input of the physics: the features' input, or separate filters
     std::vector<std::string> effects;   ///< of the physics, in addition to the rigid body
     std::string prior = "scaled";       ///< of the physics' parameters: scaled, unit, diagonal
     int lags = 10;                      ///< M

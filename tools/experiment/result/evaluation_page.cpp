@@ -31,7 +31,7 @@ std::string counted(std::size_t count, const std::string& thing) {
     return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
-/// What an evaluation found, in words, pictures and tables.
+/// Results of an evaluation in words, pictures and tables.
 class EvaluationPage {
   public:
     EvaluationPage(const Plan& plan, const PlanData& data, const EvaluationResults& results)

@@ -33,11 +33,11 @@ struct RunOptions {
     bool fresh = false;           ///< repeat all jobs
 };
 
-/// Runs the remaining jobs of a plan. A job with an existing file is read instead, if the file has the same
-/// plan (the part that concerns the job), checksums of the recordings, and program. Files are replaced
-/// atomically, so that an aborted run can continue. `progress` receives the number of completed jobs
-/// (including reused and failed ones, and the share of those in progress), in the calling thread. After an
-/// InputError in one job the others continue; any other exception ends the run.
+/// Runs the remaining jobs of a plan. A job with an existing file is read instead if its part of the plan,
+/// the recordings' checksums and the program are the same. Files are replaced atomically, so that an aborted
+/// run can continue. `progress` receives the number of completed jobs (including reused and failed ones, and
+/// the share of those in progress), in the calling thread. After an InputError in one job the others
+/// continue; any other exception ends the run.
 EvaluationResults run_plan(const Plan& plan, const PlanData& data, const RunOptions& options,
                            const std::function<void(double)>& progress);
 

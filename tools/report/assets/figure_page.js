@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 "use strict";
 
-// Charts of a page of figures. A dragged rectangle becomes the view, also of charts over the same x; a double click
-// shows all; a button saves the chart as a picture.
+// Charts of a page of figures. A dragged rectangle becomes the view, also of charts over the same x. A double click
+// shows all. A button saves the chart as a picture.
 
 const largest_zoom = 20; // the paths have a resolution of a hundredth of a pixel
 const shortest_drag = 8; // pixels
@@ -148,7 +148,7 @@ class ZoomableChart {
     }
 }
 
-// A rectangle that the mouse drags becomes the view; one that is flat leaves the other axis as it is.
+// A rectangle that the mouse drags becomes the view; a flat rectangle changes one axis only.
 function add_dragging(chart) {
     let start = null;
     const frame = element("rect", { class: "selection" });
@@ -190,7 +190,7 @@ function add_dragging(chart) {
     chart.chart.addEventListener("dblclick", () => chart.show(chart.whole));
 }
 
-// Ctrl + wheel, which is also what a pinch on a touchpad sends, zooms around the pointer.
+// Ctrl + wheel, which a pinch on a touchpad also sends, zooms around the pointer.
 function add_wheel(chart) {
     chart.chart.addEventListener("wheel", event => {
         if ((event.ctrlKey || event.metaKey) && chart.covers(event)) {
@@ -203,7 +203,7 @@ function add_wheel(chart) {
     }, { passive: false });
 }
 
-// With the focus on the chart + and - zoom, the arrows pan, Home shows all.
+// Keys of a chart with the focus: + and - zoom, the arrows pan, Home shows all.
 function add_keys(chart) {
     chart.chart.parentElement.addEventListener("keydown", event => {
         const { x, y, width, height } = chart.view;
@@ -221,7 +221,7 @@ function add_keys(chart) {
     });
 }
 
-// Returns a promise of the chart as it is shown, as PNG at twice its size.
+// Returns a promise of the displayed chart as PNG at twice its size.
 async function png_of(chart) {
     const copy = chart.cloneNode(true);
     const style = element("style", {}, [...document.querySelectorAll("style")].map(one => one.textContent).join("\n"));

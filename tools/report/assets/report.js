@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Puts the page together: a block of charts per output and one for the innovation, their read-outs, and what
-// changes all of them.
+// Assembles the page: a block of charts per output and one for the innovation, their read-outs, and the common
+// controls.
 
 const print_width = 680; // CSS pixels that fit on A4 and on Letter
 
@@ -16,7 +16,7 @@ function element(name, class_name, ...children) {
 const first_date_s = 1e9;
 const last_date_s = 8.64e12; // of Date
 
-// A key of the legend with the value under the cursor beside it.
+// A key of the legend, followed by the value under the cursor.
 function legend_key(kind, text) {
     const value = element("span", "value");
     return { node: element("span", `key ${kind}`, element("i", "swatch"), text, value), value };
@@ -33,7 +33,7 @@ class Page {
         this.theme = read_theme({});
         this.charts = []; // {chart, limits, height_for, visible, stale}
         this.readers = []; // each shows the values of a row, or none for null
-        this.summaries = []; // each shows what depends on the rows in view
+        this.summaries = []; // each shows figures of the rows in view
         this.row = undefined;
         this.width = undefined;
         this.printing = false;
@@ -161,7 +161,7 @@ class Page {
         this.show_where();
     }
 
-    // Drawing is what costs time: charts that are scrolled out of view follow when they come into view.
+    // Drawing is slow: charts outside the view are drawn when they come into view.
     update_charts(wanted) {
         const { min, max, rows } = this.range;
         for (const entry of this.charts.filter(each => each.stale && wanted(each))) {
@@ -210,7 +210,7 @@ class Page {
         entry_of.forEach((entry, root) => observer.observe(root));
     }
 
-    // A canvas does not adapt to paper by itself: for printing, the light colours and a width that fits.
+    // A canvas does not adapt to paper: printing uses the light colours and a fitting width.
     follow_print() {
         const print = on => {
             this.printing = on;

@@ -32,7 +32,7 @@ function read_theme(theme) {
     return theme;
 }
 
-// The numbers among `values` in rows first..last, sorted; of a long stretch an evenly spaced few thousand.
+// The numbers among `values` in rows first..last, sorted; of a long interval a few thousand, evenly spaced.
 function sorted_numbers(values, [first, last]) {
     const stride = Math.max(1, Math.floor((last - first + 1) / 4000));
     const numbers = [];
@@ -60,8 +60,8 @@ function extremes(values, [first, last]) {
     return [min, max];
 }
 
-// All of what was measured, and of the predictions all but the few furthest out, so that a wild first
-// prediction does not flatten everything.
+// Includes all measurements, and the predictions without the few farthest ones, so that a large error of the
+// first prediction does not flatten the curves.
 function signal_limits(output, rows) {
     let [min, max] = extremes(output.measured, rows);
     const predicted = sorted_numbers(output.predicted, rows);
@@ -94,14 +94,14 @@ function innovation_limits(innovation, rows) {
     return uPlot.rangeLog(Math.max(min, 1e-6 * max), max, 10, false);
 }
 
-// The decimals that show a multiple of `step`, which has at most two significant digits, in full.
+// Number of decimals for a multiple of `step`, which has at most two significant digits.
 function decimals_for(step) {
     const of_first_digit = Math.max(-Math.floor(Math.log10(step) + 1e-6), 0);
     const exact = Math.abs(step * 10 ** of_first_digit - Math.round(step * 10 ** of_first_digit)) < 1e-6;
     return Math.min(of_first_digit + Number(!exact), 9);
 }
 
-// With the minus sign of typography, which is as wide as a digit.
+// Uses the typographic minus sign, which is as wide as a digit.
 function signed_text(text) {
     return text.replace("-", "\u2212");
 }
@@ -148,7 +148,7 @@ function time_axis(theme, labelled) {
     return { ...axis_style(theme), space: 70, ...(labelled ? shown : hidden) };
 }
 
-// The same for all charts, so that their times stand below each other.
+// Equal for all charts, so that their time axes are aligned.
 function value_axis_size(chart) {
     return chart.width < narrow_page ? 50 : 60;
 }
@@ -169,12 +169,12 @@ function line(stroke, width) {
     return { stroke, width, points: { show: false } };
 }
 
-// A line that also shows its samples once they are far enough apart.
+// A line that also shows its samples if they are far enough apart.
 function sampled_line(stroke, width) {
     return { stroke, width, points: { size: 5, width: 0, fill: stroke } };
 }
 
-// What is common to all charts. `height(narrow)` is that of the plot with its axes, without the lanes of
+// Common options of all charts. `height(narrow)`: height of the plot with its axes, without the lanes of
 // labels above it.
 function chart_options(page, { y_label, height, lanes, with_time }) {
     const keep = (chart, min, max) => [min, max];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 "use strict";
 
-// Turns what the program put into the page (base64 of little-endian numbers) into the arrays that the charts
-// draw. What is not finite becomes null, which the charts show as a gap.
+// Converts the page's data (base64 of little-endian numbers) to the arrays that the charts draw. Values that are
+// not finite become null, which the charts show as a gap.
 
 function decode_bytes(base64) {
     const text = atob(base64);
@@ -57,7 +57,7 @@ function decode_output(series, decode) {
 function decode_innovation(innovation, decode) {
     const values = decode(innovation.normalised_squared);
     return {
-        // what a logarithmic axis can show
+        // only positive values have a place on a logarithmic axis
         values: values.map(value => (value !== null && value > 0 ? value : null)),
         threshold: innovation.threshold,
         threshold_label: innovation.threshold_label,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// What is drawn on the charts besides their lines: recordings, intervals, marks, the threshold. Positions here
-// are in pixels of the canvas.
+// Drawings on the charts in addition to their lines: recordings, intervals, marks, the threshold. Positions are
+// in pixels of the canvas.
 
 const lane_height = 20; // of one row of labels above a plot, in CSS pixels
 const label_gap = 10;
@@ -22,7 +22,7 @@ function recording_end(report, index) {
     return index + 1 < report.recordings.length ? report.recordings[index + 1].start_s : Infinity;
 }
 
-// Position of time t, no further out than the plot's edges.
+// Position of time t, clamped to the plot's edges.
 function clamped_position(chart, t) {
     const { left, width } = chart.bbox;
     return Math.min(Math.max(chart.valToPos(t, "x", true), left), left + width);
@@ -70,7 +70,7 @@ function draw_background(chart, report, theme) {
     chart.ctx.restore();
 }
 
-// `text`, cut so that it is no wider than `width`; "" when not even three characters fit.
+// `text`, shortened to `width`; "" if fewer than three characters fit.
 function fit_text(ctx, text, width) {
     if (ctx.measureText(text).width <= width) {
         return text;

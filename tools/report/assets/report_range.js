@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The stretch of time that all charts show, and the gestures that change it.
+// The time range that all charts show, and the gestures that change it.
 
 const shortest_range_in_samples = 8;
 
@@ -78,7 +78,7 @@ function show_selection(chart, range) {
     }
 }
 
-// Ctrl + wheel, which is also what a pinch on a touchpad sends, zooms around the pointer; a sideways wheel pans.
+// Ctrl + wheel, which a pinch on a touchpad also sends, zooms around the pointer; a sideways wheel pans.
 // The plain wheel scrolls the page.
 function handle_wheel(event, chart, range) {
     if (event.ctrlKey || event.metaKey) {
@@ -156,7 +156,7 @@ class TouchGestures {
         }
     }
 
-    // The range that keeps under both fingers the times that were there when they came down.
+    // The range in which both fingers remain at the times at which they touched the plot.
     pinch(a, b) {
         const time_per_pixel = (b.t - a.t) / (b.x - a.x);
         if (time_per_pixel > 0 && Number.isFinite(time_per_pixel)) {

@@ -102,7 +102,7 @@ void attach_payload(ChangeCase& one, const ChangeArm& arm, Scenario& scenario, D
 /// Time of the simulation (s), shared with everything that changes during it.
 using Clock = std::shared_ptr<double>;
 
-/// Adds the friction of further seals and bearings to that of the bristles. It reverses its sign within 0.01
+/// Adds friction of further seals and bearings to the bristles' friction. It reverses its sign within 0.01
 /// rad/s.
 void change_friction(ChangeCase& one, Scenario& scenario, const Clock& clock, Draw& draw) {
     const std::size_t joint = draw.below(scenario.actuators.friction.size());

@@ -46,7 +46,7 @@ std::optional<DrawnEffect> draw_outside_effect(const std::string& name, const Ef
 /// Draws any effect. Throws InputError for an unknown name.
 std::optional<DrawnEffect> draw_effect(const std::string& name, const EffectDraw& of);
 
-/// Whether the effect can change these outputs.
+/// Returns whether the effect can change these outputs.
 bool shows(const std::string& effect, tools::OutputKind outputs, bool constants_known);
 
 inline constexpr double stiff_bend = 5e-4; ///< rad

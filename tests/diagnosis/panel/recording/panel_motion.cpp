@@ -46,7 +46,7 @@ std::vector<Tone> random_tones(double half, double speed, Draw& draw) {
     return tones;
 }
 
-/// Whether the joint's limits allow a slow tone of more than one turn.
+/// Returns whether the joint's limits allow a slow tone of more than one turn.
 bool turns_round(const RobotJoint& joint) {
     const double whole_turn = 2 * std::numbers::pi + limit_margin;
     return (!joint.lower || *joint.lower <= -whole_turn + 2 * limit_margin) &&

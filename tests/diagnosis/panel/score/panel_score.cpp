@@ -15,7 +15,7 @@ bool is(const tools::Finding& finding, const HiddenEffect& hidden) {
     return finding.effect == hidden.effect && finding.where == hidden.where;
 }
 
-/// Whether the finding is specific enough: its class of indistinguishable causes is small.
+/// Returns whether the finding is specific enough: its class of indistinguishable causes is small.
 bool answers(const tools::Finding& finding) { return finding.indistinguishable.size() < largest_class; }
 
 bool has(const tools::Finding& finding, const HiddenEffect& hidden) {

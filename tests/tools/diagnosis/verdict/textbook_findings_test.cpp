@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Findings of plain least squares at a joint where its error is smaller than that of the causes found.
+// Findings of plain least squares at a joint where its error is smaller than with the causes found.
 #include "tools/diagnosis/verdict/textbook_findings.hpp"
 
 #include "tests/support/catch.hpp"
@@ -131,7 +131,8 @@ TEST_CASE("least squares confirms a gain and lowers the confidence of a delay at
 TEST_CASE("a rigid-body torque proportional to the acceleration gives no rotor inertia") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const VectorXd rigid = 3 * signals.measured.motion.acceleration.col(0); // as of a prismatic joint
+    const VectorXd rigid =
+        3 * signals.measured.motion.acceleration.col(0); // like the gravity-free torque of a prismatic joint
     const VectorXd measured = rigid + slow_noise(signals.rows(), 0.3, engine);
     for (const bool gain_known : {false, true}) {
         const MovingFit fit = fit_moving_rows(signals, measured, rigid, 0, gain_known);

@@ -31,8 +31,8 @@ struct Header {
 };
 
 /// Reads the line of a recording with the names of its columns. Throws InputError, starting with `where`
-/// (file and line), if the line is no header, a name occurs twice, a column required by `options` is missing,
-/// or its patterns and units do not fit.
+/// (file and line), for a line that is no header, a repeated name, a missing column of `options`, or patterns
+/// and units that do not fit.
 Header parse_header(std::string_view line, const std::string& where, ReadOptions options);
 
 } // namespace dfdyn::tools

@@ -8,8 +8,7 @@
 namespace dfdyn::tools {
 
 /// Splits the line with the names of the columns. Throws InputError, starting with `where` (file and line),
-/// if it is no text, as with UTF-16 or CR line ends, if it is a line of a candump log, or if it has no
-/// separator.
+/// for bytes that are no text (UTF-16, CR line ends), a line of a candump log, or a line without a separator.
 std::vector<std::string> header_names(std::string_view line, char separator, const std::string& where);
 
 /// Returns ` (--columns q=q*,tau=tau*)`, which reads numbered columns that begin with 0, for the quantities
