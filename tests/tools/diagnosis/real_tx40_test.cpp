@@ -52,7 +52,7 @@ double value_of(const Diagnosis& diagnosis, const std::string& effect, const std
 
 } // namespace
 
-TEST_CASE("the friction found in seven seconds of a real TX40 agrees with its owner's documentation") {
+TEST_CASE("the friction found in seven seconds of a real TX40 agrees with its owner's values") {
     const Diagnosis diagnosis = diagnosis_of_tx40();
     for (std::size_t i = 0; i < documented_friction.size(); ++i) {
         const std::string where = "joint" + std::to_string(i + 1);
