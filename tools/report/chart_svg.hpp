@@ -35,7 +35,7 @@ std::string joined(std::initializer_list<std::string_view> parts);
 std::string attribute(std::string_view name, double value);
 std::string line(std::string_view kind, double x1, double y1, double x2, double y2);
 
-/// `content`: already escaped.
+/// Returns a text element. `content`: already escaped.
 std::string text(std::string_view kind, double x, double y, std::string_view content);
 
 /// Returns the beginning of a chart with its title, which is plain text.

@@ -24,10 +24,9 @@ SetupFindings check_wrapping(const Recording& recording);
 /// than 20,000 N·m indicates mN·m. The 99.9 % quantile of the magnitudes is used. Cost: O(rows).
 SetupFindings check_output_unit(const Recording& recording, OutputKind outputs);
 
-/// Detects positions in degrees or thousandths by the joints' limits: a mistake if they exceed them more than
-/// five times and are beyond two turns (5 m); a warning for a smaller excess. Without limits or without a
-/// robot (null), at least three joints, and at least half of the joints, beyond two turns indicate degrees.
-/// Cost: O(rows).
+/// Detects positions in degrees or thousandths by the joints' limits: a mistake beyond six times the limits
+/// and two turns (5 m), a warning beyond 1.2 times the limits. Without limits or without a robot (null), at
+/// least three joints, and at least half of the joints, beyond two turns indicate degrees. Cost: O(rows).
 SetupFindings check_position_unit(const Recording& recording, const Robot* robot);
 
 /// Returns the remedy for columns of `quantity` in `unit`, both as in --units: `multiply by pi/180, or
@@ -72,8 +71,8 @@ SetupFindings check_degrees_by_gravity(const Recording& recording, const Recorde
 /// Detects outputs in a wrong unit by their ratio to the rigid body's, if that explains half of the variance
 /// left by friction. A mistake requires that two outputs or more agree (within a factor of 10) on a factor of
 /// 50 too large or too small; for an arm of one joint, and for a wrench, a factor of 300. A warning if one
-/// joint of several has a factor of 300. For currents with unknown torque constants: from 50 A/N·m, a single
-/// joint from 200.
+/// joint of several is 300 times too large. For currents with unknown torque constants: from 50 A/N·m, a
+/// single joint from 200; or below 1 A per 500 N·m.
 SetupFindings check_output_size(const ArmRecording& arm);
 
 /// Compares the set-up with alternatives by their likelihood, and returns the best alternative if it is much
@@ -85,9 +84,9 @@ SetupFindings check_output_size(const ArmRecording& arm);
 /// - positions in degrees.
 ///
 /// The criterion is the sum over the outputs of the logarithm of the variance left by the set-up over the
-/// variance left by the alternative: 0.8 and more is a mistake, 0.5 a warning. An exchange is never a mistake
-/// for a wrench, nor is gravity for an arm of one joint. Cost: 3 n^2 / 2 times 1,000 rigid-body regressors if
-/// some output is not explained, otherwise 2,000.
+/// variance left by the alternative: 0.8 and more is a mistake, 0.5 a warning. For a wrench, exchanges and
+/// signs of positions are never a mistake, nor is gravity for an arm of one joint. Cost: 3 n^2 / 2 times
+/// 1,000 rigid-body regressors if some output is not explained, otherwise 2,000.
 SetupFindings check_readings(const ArmRecording& arm);
 
 /// Detects a robot's file that does not belong to the recording: a mistake if the file's rigid body with any

@@ -19,7 +19,7 @@ constexpr double two_turns = 4 * std::numbers::pi;
 
 // Clock: recordings are expected to have 50 Hz to 5 kHz, with steps of 0.2 to 20 in milliseconds.
 constexpr double suspicious_step_s = 0.19;
-constexpr double hopeless_step_s = 2;
+constexpr double certain_step_s = 2;
 constexpr double shortest_step_s = 2e-5;
 constexpr double slowest_joint = 0.03; ///< rad/s: 30 rad/s in milliseconds
 constexpr double fastest_joint = 60;   ///< rad/s
@@ -37,7 +37,7 @@ double duration_s(const Recording& recording, std::size_t row) {
 }
 
 /// Returns the 99 % quantile of a joint's speed, per second; 0 for too few rows.
-double usual_speed(const Recording& recording, std::size_t joint) {
+double speed_quantile(const Recording& recording, std::size_t joint) {
     std::vector<double> speeds;
     for (std::size_t row = 1; row < recording.row_count(); ++row) {
         if (recording.gap_before[row] == 0) {
@@ -52,7 +52,7 @@ double usual_speed(const Recording& recording, std::size_t joint) {
 double speed_of_fastest(const Recording& recording) {
     double fastest = 0;
     for (std::size_t joint = 0; joint < recording.joint_count(); ++joint) {
-        fastest = std::max(fastest, usual_speed(recording, joint));
+        fastest = std::max(fastest, speed_quantile(recording, joint));
     }
     return fastest;
 }
@@ -108,14 +108,14 @@ struct BeyondLimits {
 
 /// Placeholder limits (0 to 0) and continuous joints have no limits.
 BeyondLimits beyond_limits(const Recording& recording, const Robot& robot) {
-    constexpr double play = 1.2;
+    constexpr double tolerance = 1.2;
     constexpr double another_unit = 5; // above any error of an encoder's zero
     BeyondLimits result;
     for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
         const RobotJoint& one = robot.joints[joint];
         const double limit = one.lower ? std::max(std::abs(*one.lower), std::abs(*one.upper)) : 0;
         const double largest = largest_magnitude(recording.position, joint);
-        const double ratio = limit > 0 ? largest / (play * limit) : 0;
+        const double ratio = limit > 0 ? largest / (tolerance * limit) : 0;
         if (ratio > 1) {
             result.joints.push_back(joint);
             result.factor = std::max(result.factor, ratio);
@@ -181,9 +181,9 @@ SetupFindings check_clock(const Recording& recording) {
     };
     if (step >= suspicious_step_s) {
         const bool creeping = largest_travel(recording) > 0 && speed_of_fastest(recording) < slowest_joint;
-        return finding(step >= hopeless_step_s || creeping, "column t: expected seconds, found rows " +
-                                                                rounded_text(step) + " s apart: looks like " +
-                                                                clock_unit(step));
+        return finding(step >= certain_step_s || creeping, "column t: expected seconds, found rows " +
+                                                               rounded_text(step) + " s apart: looks like " +
+                                                               clock_unit(step));
     }
     if (step < shortest_step_s) {
         return finding(speed_of_fastest(recording) > fastest_joint,

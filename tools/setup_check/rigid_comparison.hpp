@@ -44,7 +44,7 @@ struct RigidParts {
     Eigen::VectorXd sum(Eigen::Index k) const { return gravity.col(k) + inertia.col(k); }
 };
 
-/// Cost: 2 T rigid-body regressors.
+/// Returns the outputs of the rigid body along `motion`, T states. Cost: 2 T rigid-body regressors.
 RigidParts rigid_parts(const Robot& robot, OutputKind kind, const RobotMotion& motion);
 
 /// Viscous and Coulomb friction of a joint: velocity and friction_direction(), T x 2.

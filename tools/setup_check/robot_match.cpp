@@ -74,10 +74,10 @@ VectorXd deviations(const MatrixXd& columns) {
 } // namespace
 
 SetupFindings check_robot_match(const ArmRecording& arm) {
-    constexpr double carries = 0.1; // of the largest deviation of gravity
+    constexpr double least_gravity_share = 0.1; // of the largest deviation of gravity
     constexpr double least_share = 0.01;
-    constexpr double far_better = 1.2;
-    constexpr double much = 0.06;
+    constexpr double least_log_ratio = 1.2;
+    constexpr double least_residual = 0.06;
     constexpr int turns = 2;
     if (arm.wrench()) {
         return {};
@@ -90,7 +90,7 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
     double ratio = 0;
     double left = 0;
     for (Index k = 0; k < arm.counted(); ++k) {
-        if (!(weight[k] > carries * weight.maxCoeff()) || !swings(motion, k, turns)) {
+        if (!(weight[k] > least_gravity_share * weight.maxCoeff()) || !swings(motion, k, turns)) {
             continue;
         }
         if (const std::optional<Comparison> found = compare(arm, parts, smooth, k)) {
@@ -100,7 +100,7 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
         }
     }
     const auto count = static_cast<double>(columns.size());
-    if (columns.empty() || ratio < far_better * count || left < much * count) {
+    if (columns.empty() || ratio < least_log_ratio * count || left < least_residual * count) {
         return {};
     }
     return {

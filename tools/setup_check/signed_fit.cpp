@@ -56,7 +56,7 @@ std::vector<Index> step_to_solution(const MatrixXd& gram, const VectorXd& produc
 
 /// Nonnegative minimizer of x' gram x / 2 - product' x for a gram matrix with a unit diagonal.
 VectorXd nonnegative_minimizer(const MatrixXd& gram, const VectorXd& product) {
-    constexpr double settled = 1e-9;
+    constexpr double convergence = 1e-9;
     VectorXd x = VectorXd::Zero(product.size());
     for (Index round = 0; round < 5 * product.size(); ++round) {
         VectorXd slope = product - gram * x;
@@ -64,7 +64,7 @@ VectorXd nonnegative_minimizer(const MatrixXd& gram, const VectorXd& product) {
             slope[i] = 0;
         }
         Index steepest = 0;
-        if (!(slope.maxCoeff(&steepest) > settled * product.cwiseAbs().maxCoeff())) {
+        if (!(slope.maxCoeff(&steepest) > convergence * product.cwiseAbs().maxCoeff())) {
             break;
         }
         std::vector<Index> support = positive_of(x);

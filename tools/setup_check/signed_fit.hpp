@@ -11,10 +11,10 @@ struct SignedFit {
     Eigen::VectorXd coefficients; ///< of the columns with nonnegative coefficients
 };
 
-/// `output`: T. `free`: T x f; an offset is always included. `not_negative`: T x s. A column that is constant
-/// or a combination of the free ones, within 1e-6, is ignored. Method: nonnegative least squares of the
-/// normal equations (Lawson and Hanson, Solving Least Squares Problems, 1974, ch. 23). Cost: T (f + s)^2, and
-/// at most 10 s systems of s equations.
+/// Fits `output` (T) with an offset, the columns `free` (T x f) and the columns `not_negative` (T x s). A
+/// column that is constant or a combination of the free ones, within 1e-6, is ignored. Method: nonnegative
+/// least squares of the normal equations (Lawson and Hanson, Solving Least Squares Problems, 1974, ch. 23).
+/// Cost: T (f + s)^2, and at most 10 s systems of s equations.
 SignedFit fit_signed(const Eigen::VectorXd& output, const Eigen::MatrixXd& free,
                      const Eigen::MatrixXd& not_negative);
 

@@ -196,12 +196,14 @@ class HypothesisSearch {
 
     /// Adds a hypothesis' variance to a prior; `sign` -1: subtracts it.
     void accept(PooledPrior& prior, const ArmHypothesis& one, double sign = 1) const {
-        constexpr double wider = 4; // ratio of a wrong link's standard deviation to that of the others
+        constexpr double wrong_link_factor = 4; // standard deviation, relative to the other links
         const Index first = 10 * one.body.value_or(bodies() - 1);
         MatrixXd& covariance = one.recording ? prior.changed[*one.recording] : prior.covariance;
         if (one.body) {
-            const Eigen::Array<double, 10, 1> usual = link_deviations(signals_).segment<10>(first).array();
-            covariance.diagonal().segment<10>(first).array() += sign * (wider * wider - 1) * usual.square();
+            const Eigen::Array<double, 10, 1> nominal_deviation =
+                link_deviations(signals_).segment<10>(first).array();
+            covariance.diagonal().segment<10>(first).array() +=
+                sign * (wrong_link_factor * wrong_link_factor - 1) * nominal_deviation.square();
         } else {
             covariance.block<10, 10>(first, first) += sign * load_.covariance();
         }
@@ -219,7 +221,7 @@ class HypothesisSearch {
     }
 
     /// Returns every hypothesis that is not accepted and physically possible, with its log-evidence.
-    std::vector<ArmHypothesis> tried() const {
+    std::vector<ArmHypothesis> possible_hypotheses() const {
         std::vector<ArmHypothesis> possible;
         for (ArmHypothesis& one : all_hypotheses()) {
             if (is_accepted(one)) {
@@ -243,7 +245,7 @@ class HypothesisSearch {
 
     std::optional<ArmHypothesis> best_hypothesis() const {
         constexpr double tie = 5; // log-evidence: odds of 150
-        std::vector<ArmHypothesis> all = tried();
+        std::vector<ArmHypothesis> all = possible_hypotheses();
         std::ranges::stable_sort(all, std::ranges::greater(), &ArmHypothesis::margin);
         if (all.empty() || all.front().margin < least_evidence) {
             return std::nullopt;

@@ -50,7 +50,7 @@ std::vector<Size> sizes_of(const DiagnosisWork& work, const Finding& finding,
 
 /// Returns whether the mean size, with its spread between recordings, is less than two deviations above zero.
 bool contradict(const std::vector<Size>& sizes) {
-    constexpr double far = 2;
+    constexpr double significant_deviations = 2;
     double weights = 0, squares = 0, mean = 0;
     for (const Size& size : sizes) {
         weights += 1 / size.variance;
@@ -69,7 +69,7 @@ bool contradict(const std::vector<Size>& sizes) {
         pooled += size.factor / (size.variance + between);
         precision += 1 / (size.variance + between);
     }
-    return pooled < far * std::sqrt(precision); // mean = pooled / precision
+    return pooled < significant_deviations * std::sqrt(precision); // mean = pooled / precision
 }
 
 std::string factors_text(const std::vector<Size>& sizes) {

@@ -41,13 +41,13 @@ class RandomEffects {
 
     PooledFit fit() {
         constexpr int most_iterations = 60;
-        constexpr double settled = 1e-3;
+        constexpr double convergence = 1e-3;
         update_common(); // a first value, on which the expected spread depends
         for (int iteration = 0; iteration < most_iterations; ++iteration) {
             update_common();
             const VectorXd before = fit_.ratio;
             update_spread();
-            if (((fit_.ratio - before).array().abs() < settled * before.array()).all()) {
+            if (((fit_.ratio - before).array().abs() < convergence * before.array()).all()) {
                 break;
             }
         }

@@ -26,11 +26,11 @@ struct JointRows {
 
     /// Estimates the noise and the robust weights from the residual of these values.
     void take_residual(const VectorXd& values, double rate_hz) {
-        constexpr double far = 3;
+        constexpr double huber_deviations = 3;
         const VectorXd residual = target - columns * values(unknowns);
         variance = std::max(weighted_mean_square(residual, robust), 1e-12);
         const VectorXd allowed =
-            far * std::sqrt(variance) * residual.cwiseAbs().cwiseMax(1e-12).cwiseInverse();
+            huber_deviations * std::sqrt(variance) * residual.cwiseAbs().cwiseMax(1e-12).cwiseInverse();
         robust = weight.cwiseProduct(allowed.cwiseMin(1));
         variance = std::max(weighted_mean_square(residual, robust), 1e-12);
         correlated = correlated_rows(residual, robust, rate_hz);

@@ -22,10 +22,11 @@ struct RigidTorque {
 
 /// Magnitude of an output's response to the rigid-body torque in a frequency band, for any delay. Least
 /// squares on the torque and on its derivative, which is a quarter of a period out of phase.
-struct Answer {
+struct BandResponse {
     double size = 0, deviation = 0;
 
-    Answer(const RigidTorque& torque, const Eigen::MatrixXd& output, Eigen::Index first, double middle_hz) {
+    BandResponse(const RigidTorque& torque, const Eigen::MatrixXd& output, Eigen::Index first,
+                 double middle_hz) {
         Eigen::MatrixXd columns(bins_of_band * output.cols(), 2);
         columns << torque.value.middleRows(first, bins_of_band).reshaped(),
             torque.slope.middleRows(first, bins_of_band).reshaped() / (2 * std::numbers::pi * middle_hz);
@@ -44,21 +45,21 @@ struct Answer {
 
 /// Returns the number of bins up to the last band with a significant response. The response is limited only
 /// if a higher band has significantly less than half of the overall response; otherwise all bins count.
-Eigen::Index answered_bins(const SpectralRows& rows, const RigidTorque& torque,
-                           const Eigen::MatrixXd& output) {
+Eigen::Index responding_bins(const SpectralRows& rows, const RigidTorque& torque,
+                             const Eigen::MatrixXd& output) {
     const double half = torque.value.cwiseProduct(output).sum() / torque.value.squaredNorm() / 2;
-    Eigen::Index answered = 0;
+    Eigen::Index responding = 0;
     bool silent = false;
     for (Eigen::Index first = 0; half > 0 && first + bins_of_band <= rows.bins(); first += bins_of_band) {
-        const Answer band(torque, output, first, rows.frequency_hz(first + bins_of_band / 2));
+        const BandResponse band(torque, output, first, rows.frequency_hz(first + bins_of_band / 2));
         if (band.size - sure_deviations * band.deviation > half) {
-            answered = first + bins_of_band;
+            responding = first + bins_of_band;
             silent = false;
         } else if (band.deviation > 0 && band.size + sure_deviations * band.deviation < half) {
             silent = true;
         }
     }
-    return silent && answered > 0 ? answered : rows.bins();
+    return silent && responding > 0 ? responding : rows.bins();
 }
 
 } // namespace
@@ -69,8 +70,8 @@ Eigen::VectorXd answered_hz(const DiagnosisSignals& signals) {
     for (Eigen::Index output = 0; !signals.wrench() && output < signals.outputs(); ++output) {
         const Eigen::VectorXd torque = signals.nominal.col(output);
         const Eigen::Index bins =
-            answered_bins(rows, {rows.analyse(torque, output), rows.analyse(signals.rate(torque), output)},
-                          rows.analyse(signals.measured.outputs.col(output), output));
+            responding_bins(rows, {rows.analyse(torque, output), rows.analyse(signals.rate(torque), output)},
+                            rows.analyse(signals.measured.outputs.col(output), output));
         if (bins < rows.bins()) {
             result[output] = rows.frequency_hz(bins - 1);
         }

@@ -9,12 +9,12 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double presliding_travel = 3e-3; ///< rad (m)
-constexpr double standing_s = 0.3;         ///< shortest standstill
-constexpr double fade_s = 0.1;             ///< ramp between weights 0 and 1
-constexpr double longest_end_s = 2;        ///< longest ramp at the ends of a segment
-constexpr double end_share = 1.0 / 6;      ///< largest share of a segment that a ramp covers
-constexpr double least_straying = 0.1;     ///< of the output's standard deviation
+constexpr double presliding_travel = 3e-3;         ///< rad (m)
+constexpr double standing_s = 0.3;                 ///< shortest standstill
+constexpr double fade_s = 0.1;                     ///< ramp between weights 0 and 1
+constexpr double longest_end_s = 2;                ///< longest ramp at the ends of a segment
+constexpr double end_share = 1.0 / 6;              ///< largest share of a segment that a ramp covers
+constexpr double least_standstill_deviation = 0.1; ///< of the output's standard deviation
 constexpr double least_moving = 0.1; ///< of the rows: a joint that moves in fewer rows keeps all weights
 
 double faded(double share) {
@@ -27,7 +27,7 @@ Eigen::Index rows_of(const MeasuredMotion& measured, double time_s) {
 }
 
 /// Marks the rows within any window of `standing_s` in which the joint travels less than `presliding_travel`.
-std::vector<bool> standing_rows(const MeasuredMotion& measured, Eigen::Index joint) {
+std::vector<bool> stationary_rows(const MeasuredMotion& measured, Eigen::Index joint) {
     const Eigen::Index window = rows_of(measured, standing_s);
     std::vector<bool> standing(static_cast<std::size_t>(measured.time_s.size()), false);
     for (const Stretch& stretch : measured.stretches) {
@@ -44,8 +44,8 @@ std::vector<bool> standing_rows(const MeasuredMotion& measured, Eigen::Index joi
 
 /// Standard deviation of a joint's output within its standstills, after subtraction of the fitted rigid-body
 /// torque and of the mean of each standstill. Relative to the standard deviation of the output.
-double straying(const std::vector<bool>& standing, const Eigen::VectorXd& output,
-                const Eigen::VectorXd& torque) {
+double standstill_deviation(const std::vector<bool>& standing, const Eigen::VectorXd& output,
+                            const Eigen::VectorXd& torque) {
     const Eigen::VectorXd error = output - output.dot(torque) / torque.squaredNorm() * torque;
     double squares = 0;
     double rows = 0;
@@ -77,20 +77,21 @@ Eigen::VectorXd rows_since(const std::vector<bool>& off, Eigen::Index most) {
 }
 
 /// Weights that rise from 0 at the rows that are `off` to 1 over `fade` rows.
-Eigen::VectorXd weight_beside(const std::vector<bool>& off, Eigen::Index fade) {
+Eigen::VectorXd ramped_weight(const std::vector<bool>& off, Eigen::Index fade) {
     const Eigen::VectorXd until = rows_since({off.rbegin(), off.rend()}, fade).reverse();
     return (rows_since(off, fade).cwiseMin(until) / static_cast<double>(fade)).unaryExpr(&faded);
 }
 
 Eigen::VectorXd moving_weight(const MeasuredMotion& measured, const Eigen::MatrixXd& torques,
                               Eigen::Index joint) {
-    const std::vector<bool> standing = standing_rows(measured, joint);
+    const std::vector<bool> standing = stationary_rows(measured, joint);
     const double moving = static_cast<double>(std::ranges::count(standing, false));
     if (moving < least_moving * static_cast<double>(standing.size()) ||
-        straying(standing, measured.outputs.col(joint), torques.col(joint)) < least_straying) {
+        standstill_deviation(standing, measured.outputs.col(joint), torques.col(joint)) <
+            least_standstill_deviation) {
         return Eigen::VectorXd::Ones(std::ssize(standing));
     }
-    return weight_beside(standing, rows_of(measured, fade_s));
+    return ramped_weight(standing, rows_of(measured, fade_s));
 }
 
 } // namespace

@@ -142,7 +142,7 @@ Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen:
 
 Eigen::MatrixXd local_noise_scale(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                                   const Eigen::VectorXd& spectrum) {
-    constexpr double usual = 8; // degrees of freedom of the prior scale 1
+    constexpr double prior_freedom = 8; // degrees of freedom of the prior scale 1
     const Eigen::MatrixXd power = spectrum.cwiseInverse().asDiagonal() * coefficients.cwiseAbs2();
     Eigen::MatrixXd noise_scale(power.rows(), power.cols());
     const Eigen::Index holding = coefficients.rows() - zero_bins(coefficients);
@@ -154,7 +154,7 @@ Eigen::MatrixXd local_noise_scale(const Eigen::MatrixXd& coefficients, const Eig
             const Eigen::RowVectorXd total = power.middleRows(first, count).colwise().sum() +
                                              (static_cast<double>(count) - held * filled.array()).matrix();
             noise_scale.middleRows(first, count).rowwise() =
-                ((total.array() + usual) / (static_cast<double>(count) + usual)).matrix();
+                ((total.array() + prior_freedom) / (static_cast<double>(count) + prior_freedom)).matrix();
             first += count;
         }
     }

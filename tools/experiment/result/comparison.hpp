@@ -41,8 +41,8 @@ struct FindingOutcome {
     FindingVerdict verdict;
 };
 
-/// Reproduced: all comparisons hold. Partly: some, not all. Not reproduced: none holds, and at least one is
-/// contradicted. Undecided: none holds, none is contradicted.
+/// Reproduced: all comparisons hold. Partly: more hold than are contradicted. Undecided: none holds and none
+/// is contradicted. Not reproduced: otherwise.
 FindingVerdict verdict_of(std::span<const ComparisonOutcome> comparisons);
 
 std::vector<ComparisonOutcome> compare_all(std::span<const Comparison> comparisons, const Plan& plan,
