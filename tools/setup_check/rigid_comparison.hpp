@@ -75,9 +75,9 @@ enum class FrictionSign { unclear, brakes, drives };
 
 /// Fits output `joint` by least squares with smooth functions of the positions (each position, its sine and
 /// cosine, sines and cosines of sums of neighbouring joints), all accelerations, and friction. The sign is
-/// clear under two conditions. Friction of one sign leaves less than 60 % of the residual of the other, a
-/// difference of at least 3 % of the variance. All but one of eight parts of the recording with visible
-/// friction, at least five, agree. Cost: T (7 n)^2.
+/// clear if the joint reverses four times and friction of one sign leaves less than 60 % of the residual of
+/// the other, a difference of at least 1 % of the variance. All but one of the (eight) parts of the recording
+/// with visible friction, at least five, must agree. Cost: T (7 n)^2.
 FrictionSign friction_sign(const RecordedMotion& recorded, Eigen::Index joint);
 
 /// Returns the share of an output's variance that remains after a fit with nonnegative factors and an offset.

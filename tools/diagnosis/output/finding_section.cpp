@@ -132,7 +132,7 @@ PageSection finding_section(const DiagnosisWork& work, const Finding& finding, s
     if (!finding.indistinguishable.empty()) {
         section.paragraphs.push_back(tie_sentence(finding));
     }
-    section.paragraphs.push_back("Confirming experiment: " + finding.confirm + ".");
+    section.paragraphs.push_back("Confirming experiment, " + finding.confirm + ".");
     section.charts.push_back(evidence_chart(work, finding, number));
     section.tables.push_back(parameter_table(finding));
     if (!finding.by_recording.empty()) {
