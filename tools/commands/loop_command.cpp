@@ -41,7 +41,7 @@ void add_model(CLI::App& command, LoopOptions& options) {
             "contact where the arm is then). The motion does not continue. Without it contacts are not "
             "detected. Not a safety function: docs/guide/contacts.md")
         ->type_name("stop|hold|yield");
-    add_contact_rate(command, options.limits.contact_rate_per_hour, "Of --on-contact");
+    add_contact_rate(command, options.limits.contact_rate_per_hour, "With --on-contact");
 }
 
 /// Adds the options of the loop's limits.

@@ -24,9 +24,9 @@ void ContactOptions::add_to(CLI::App& command) {
     command.add_flag("--contacts", chosen,
                      "Detect contacts from the errors of joint torques or currents, within some 0.1 s "
                      "(docs/guide/contacts.md); not a safety function");
-    command.add_option("--contact-list", file, "Likewise, and write the contacts here")
+    command.add_option("--contact-list", file, "Write the contacts here; implies --contacts")
         ->type_name("CONTACTS.json");
-    add_contact_rate(command, rate_per_hour, "Of --contacts");
+    add_contact_rate(command, rate_per_hour, "With --contacts");
 }
 
 ContactModel ContactOptions::limits(const TrainedModel& model, const std::string& source) const {

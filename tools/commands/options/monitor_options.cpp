@@ -14,17 +14,19 @@ namespace dfdyn::tools {
 
 void MonitorOptions::add_to(CLI::App& command) {
     command.add_flag("--monitor", chosen,
-                     "Watch the innovations for a change of the arm or its sensors, and say what changed "
+                     "Watch the innovations for a change of the arm or its sensors, and report what changed "
                      "(docs/guide/monitor.md)");
-    command.add_option("--changes", file, "Likewise, and write the changes here")->type_name("CHANGES.json");
+    command.add_option("--changes", file, "Write the changes here; implies --monitor")
+        ->type_name("CHANGES.json");
     command
-        .add_option("--false-alarms", false_alarm_hours,
-                    "Of --monitor: hours between two false alarms, on average; default: 5, the rate that was "
-                    "measured")
+        .add_option(
+            "--false-alarms", false_alarm_hours,
+            "With --monitor: hours between two false alarms, on average; default: 5, the rate that was "
+            "measured")
         ->check(number_in(0.01, 1e5))
         ->type_name("HOURS");
     robot.add_to(command, false);
-    command.get_option("--robot")->description("Of --monitor: the arm, for models without physics");
+    command.get_option("--robot")->description("With --monitor: the arm, for models without physics");
 }
 
 MonitorSetup MonitorOptions::setup(std::span<const TrainedModel> models, const std::string& source) const {

@@ -124,8 +124,9 @@ PageSection suspicion_section(const Diagnosis& diagnosis) {
 /// Adds a column with the errors without standstill.
 void add_moving_errors(ReportTable& table, const Diagnosis& diagnosis) {
     table.columns.push_back("while it moves");
-    table.note += " While it moves: without the rows where the output's joint stands and friction holds "
-                  "whatever it was left with, which no function of the motion tells.";
+    table.note +=
+        " While it moves: without the rows where the output's joint is at rest. Its friction can have "
+        "any value below the dry friction there, which the motion does not determine.";
     for (std::size_t k = 0; k < table.rows.size(); ++k) {
         const auto output = static_cast<Eigen::Index>(k);
         const double nominal = diagnosis.nominal.moving_nrmse[output];
@@ -202,14 +203,14 @@ ReportTable findings_table(const DiagnosisCase& one) {
     return table;
 }
 
-ReportTable granted_table(const Diagnosis& diagnosis) {
-    ReportTable table{"Taken as it fits best, without being a finding",
+ReportTable nuisance_table(const Diagnosis& diagnosis) {
+    ReportTable table{"Fitted, but not causes",
                       {"where", "quantity", "value", "95 % interval", "in the robot's file", "unit"},
                       {},
                       {}};
     table.note =
-        "Torque constants: nobody gave them. Masses: the recording fits better when each may be a few "
-        "percent off, but no single link stands out. The extended model starts at these.";
+        "Torque constants: none were given. Masses: the recording fits better when each differs by a few "
+        "percent, but no single link stands out. The extended model starts at these values.";
     for (const NuisanceEstimate& one : diagnosis.nuisance_estimates) {
         const FoundParameter& parameter = one.parameter;
         table.rows.push_back({one.where, parameter.name == "mass" ? "mass" : "torque constant",
@@ -226,7 +227,7 @@ PageSection overview_section(const DiagnosisCase& one) {
         section.tables.push_back(findings_table(one));
     }
     if (!one.work.diagnosis.nuisance_estimates.empty()) {
-        section.tables.push_back(granted_table(one.work.diagnosis));
+        section.tables.push_back(nuisance_table(one.work.diagnosis));
     }
     return section;
 }
@@ -265,11 +266,11 @@ std::vector<ReportFact> facts(const DiagnosisCase& one) {
                                    {"Recordings", recording_names(one.recordings)}};
     if (one.work.signals != nullptr) {
         const MeasuredMotion& measured = one.work.signals->measured;
-        result.push_back({"Looked at", std::to_string(measured.time_s.size()) + " rows at " +
-                                           rounded_text(measured.rate_hz) + " Hz; positions low-passed at " +
-                                           rounded_text(measured.smoothing_hz.minCoeff()) + " to " +
-                                           rounded_text(measured.smoothing_hz.maxCoeff()) +
-                                           " Hz, before they sink into their noise"});
+        result.push_back({"Analysed", std::to_string(measured.time_s.size()) + " rows at " +
+                                          rounded_text(measured.rate_hz) + " Hz; positions low-passed at " +
+                                          rounded_text(measured.smoothing_hz.minCoeff()) + " to " +
+                                          rounded_text(measured.smoothing_hz.maxCoeff()) +
+                                          " Hz, where their spectrum falls to that of their noise"});
     }
     result.push_back({"Build", build_flags()});
     return result;

@@ -78,7 +78,7 @@ void print_finding(std::ostream& out, const Diagnosis& diagnosis, const Finding&
             << rounded_text(finding.spread) << '\n';
     }
     if (!finding.indistinguishable.empty()) {
-        out << "        this motion hardly tells it from: ";
+        out << "        this motion hardly distinguishes it from: ";
         for (std::size_t i = 0; i < finding.indistinguishable.size(); ++i) {
             out << (i == 0 ? "" : "; ") << cause_words(finding.indistinguishable[i]);
         }
@@ -122,7 +122,8 @@ bool is_new(const NuisanceEstimate& nuisance) {
 }
 
 /// Prints all nuisance parameters with one name on one line.
-void print_granted(std::ostream& out, const Diagnosis& diagnosis, const std::string& name, const char* lead) {
+void print_nuisances(std::ostream& out, const Diagnosis& diagnosis, const std::string& name,
+                     const char* lead) {
     std::string list;
     for (const NuisanceEstimate& one : diagnosis.nuisance_estimates) {
         if (one.parameter.name == name && is_new(one)) {
@@ -192,8 +193,8 @@ void print_diagnosis(std::ostream& out, const Diagnosis& diagnosis,
     }
     print_errors(out, diagnosis);
     print_findings(out, diagnosis);
-    print_granted(out, diagnosis, "torque_constant", "torque constants, N·m/A: ");
-    print_granted(out, diagnosis, "mass", "masses that fit better, none of which stands out, kg: ");
+    print_nuisances(out, diagnosis, "torque_constant", "torque constants, N·m/A: ");
+    print_nuisances(out, diagnosis, "mass", "masses that fit better, none of which stands out, kg: ");
     print_experiments(out, diagnosis);
     print_unexplained(out, diagnosis);
     print_carried(out, carried);

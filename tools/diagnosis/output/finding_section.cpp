@@ -110,7 +110,7 @@ ReportTable alternatives_table(const Finding& finding) {
 }
 
 std::string tie_sentence(const Finding& finding) {
-    std::string text = "This motion cannot distinguish it from ";
+    std::string text = "This motion hardly distinguishes it from ";
     for (std::size_t i = 0; i < finding.indistinguishable.size(); ++i) {
         text.append(i == 0 ? "" : "; ").append(cause_words(finding.indistinguishable[i]));
     }

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace granted_test {
+namespace nuisance_estimates_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -81,4 +81,4 @@ TEST_CASE("unknown torque constants are estimated and have no upper bound where 
     CHECK(parameter(5).value == Approx(1 / 0.2)); // a gain is never negative
 }
 
-} // namespace granted_test
+} // namespace nuisance_estimates_test
