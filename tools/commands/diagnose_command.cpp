@@ -14,13 +14,12 @@
 #include "tools/commands/options/value_checks.hpp"
 #include "tools/diagnosis/extension/corrected_robot.hpp"
 #include "tools/diagnosis/extension/extended_model.hpp"
-#include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/diagnosis/extension/online_view.hpp"
 #include "tools/diagnosis/output/diagnosis_json.hpp"
 #include "tools/diagnosis/output/diagnosis_page.hpp"
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
 #include "tools/diagnosis/output/error_sections.hpp"
-#include "tools/diagnosis/recordings/name_from_recordings.hpp"
+#include "tools/diagnosis/recordings/diagnose_recordings.hpp"
 #include "tools/training/physics/torque_constants.hpp"
 
 #include <algorithm>
@@ -68,30 +67,13 @@ void check_changed(const DiagnoseOptions& options, OutputKind outputs, std::size
     }
 }
 
-/// Takes the loads that it finds in single recordings off their outputs, unless the set-up is wrong.
-DiagnosisWork run_diagnosis(const Robot& robot, std::vector<Recording>& recordings,
-                            const DiagnoseOptions& options, OutputKind outputs) {
-    Progress progress("searching for causes, round", 0);
-    std::size_t rounds = 0;
+DiagnosisOptions diagnosis_options(const DiagnoseOptions& options, OutputKind outputs) {
     DiagnosisOptions how;
     how.outputs = outputs;
     how.torque_constants = options.torque_constants;
     how.measure = !options.quick;
     how.check_setup = !options.no_setup_check;
-    how.parts = recordings;
-    how.progress = [&](int) { progress.update(++rounds); };
-    const SeveralRecordings several = fit_recordings(robot, recordings, how, !options.changed.empty());
-    if (!options.changed.empty() && !several.answered()) {
-        throw InputError("--changed: expected at least two recordings of two seconds without a gap, found " +
-                         std::to_string(several.pooled.size()));
-    }
-    how.torque_gains = several.torque_gains;
-    if (!several.answer.loads.empty() && !refuses_setup(robot, joined_recording(recordings), how)) {
-        take_loads_off(recordings, robot, several, outputs);
-    }
-    DiagnosisWork work = diagnose(robot, joined_recording(recordings), how);
-    name_from_recordings(work, robot, several, recordings);
-    return work;
+    return how;
 }
 
 /// Makes the model from the original recordings, with their gaps, instead of the joined one.
@@ -175,7 +157,8 @@ int run(const DiagnoseOptions& options) {
     std::vector<Recording> recordings = options.recordings.read_each_once(columns_for(robot, outputs));
     check_changed(options, outputs, recordings.size());
     check_folders(options);
-    const DiagnosisWork work = run_diagnosis(robot, recordings, options, outputs);
+    const DiagnosisWork work =
+        diagnose_recordings(robot, recordings, diagnosis_options(options, outputs), !options.changed.empty());
     const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
     const std::optional<TrainedModel> model = make_model(work, extension, recordings);
     const OnlineView online = model ? online_view(work, extension, *model, recordings) : OnlineView{};

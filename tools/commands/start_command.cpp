@@ -13,11 +13,11 @@
 #include "tools/commands/options/setup_options.hpp"
 #include "tools/commands/options/size_options.hpp"
 #include "tools/diagnosis/extension/extended_model.hpp"
-#include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/diagnosis/output/diagnosis_json.hpp"
 #include "tools/diagnosis/output/diagnosis_page.hpp"
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
 #include "tools/diagnosis/output/error_sections.hpp"
+#include "tools/diagnosis/recordings/diagnose_recordings.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/replay/contacts/contact_limits.hpp"
 #include "tools/replay/contradiction.hpp"
@@ -123,27 +123,21 @@ void diagnose_robot(const Arm& arm, const SplitRecordings& split, const StartOpt
     how.outputs = arm.outputs;
     how.measure = false;
     how.check_setup = !options.setup.unchecked;
-    std::optional<Progress> progress(std::in_place, "searching for causes, round", 0);
-    std::size_t rounds = 0;
-    how.progress = [&](int) { progress->update(++rounds); };
-    how.parts = split.training;
-    DiagnosisWork work = diagnose(*arm.robot, joined_recording(split.training), how);
-    progress.reset();
+    std::vector<Recording> training = split.training;
+    DiagnosisWork work = diagnose_recordings(*arm.robot, training, how, false);
     work.diagnosis.scope = "the first " + std::to_string(total_rows(split.training)) + " of " +
                            std::to_string(total_rows(arm.recordings)) + " rows";
     const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
     files["diagnosis.json"] = diagnosis_json(work.diagnosis).dump(2) + '\n';
     const std::string curves = "diagnosis_curves.csv";
-    files["diagnosis.html"] =
-        diagnosis_page({*arm.robot, split.training, work, extension, OnlineView{}, curves});
+    files["diagnosis.html"] = diagnosis_page({*arm.robot, training, work, extension, OnlineView{}, curves});
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
     if (answered(work)) {
         std::ostringstream table;
         write_comparison_csv(table, work);
         files[curves] = std::move(table).str(); // may be large
         const Activity activity("building the extended model");
-        candidates.push_back(
-            {"the robot with the causes found", extended_model(extension, split.training), {}, 0});
+        candidates.push_back({"the robot with the causes found", extended_model(extension, training), {}, 0});
     }
 }
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/recordings/diagnose_recordings.hpp"
+
+#include "tools/base/system/progress.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/diagnosis/extension/joined_recording.hpp"
+#include "tools/diagnosis/recordings/name_from_recordings.hpp"
+
+#include <string>
+
+namespace dfdyn::tools {
+
+DiagnosisWork diagnose_recordings(const Robot& robot, std::vector<Recording>& recordings,
+                                  DiagnosisOptions options, bool loads_differ) {
+    Progress progress("searching for causes, round", 0);
+    std::size_t rounds = 0;
+    options.progress = [&](int) { progress.update(++rounds); };
+    options.parts = recordings;
+    const SeveralRecordings several = fit_recordings(robot, recordings, options, loads_differ);
+    if (loads_differ && !several.answered()) {
+        throw InputError("a load in single recordings: expected at least two recordings of two seconds "
+                         "without a gap, found " +
+                         std::to_string(several.pooled.size()));
+    }
+    options.torque_gains = several.torque_gains;
+    if (!several.answer.loads.empty() && !refuses_setup(robot, joined_recording(recordings), options)) {
+        take_loads_off(recordings, robot, several, options.outputs);
+    }
+    DiagnosisWork work = diagnose(robot, joined_recording(recordings), options);
+    name_from_recordings(work, robot, several, recordings);
+    return work;
+}
+
+} // namespace dfdyn::tools
