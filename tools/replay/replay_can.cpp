@@ -83,7 +83,9 @@ void CanReplayer::tick(const BusSample& sample) {
 ReplayedBus CanReplayer::finish(const hal::BusCounters& counters) {
     sampler_.finish();
     const hal::BusWatch& watch = sampler_.arm().bus();
-    return {replayer_.finish(), {sampler_.frames(), counters, watch.unknown, watch.rejected}};
+    return {replayer_.finish(),
+            {sampler_.frames(), counters, watch.unknown, watch.rejected, sampler_.strays(),
+             sampler_.late_moments()}};
 }
 
 ReplayedBus replay_log(RuntimeEstimator& estimator, std::span<const TrainedModel> models,
@@ -111,6 +113,8 @@ void print_bus(std::ostream& out, const BusFigures& figures) {
     out << "bus: " << figures.frames << " frames\n";
     print(out, "frames with identifiers that the description does not have", figures.unknown);
     print(out, "frames with invalid content", figures.rejected);
+    print(out, "frames left out, with stamps ahead of those after them", figures.strays);
+    print(out, "triggers too late for a sample", figures.late_moments);
     print(out, "frames lost before they were read", figures.counters.dropped);
     print(out, "times that the controller lost frames", figures.counters.controller_overruns);
     print(out, "error frames", figures.counters.error_frames);

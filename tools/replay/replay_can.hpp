@@ -17,6 +17,8 @@ struct BusFigures {
     hal::BusCounters counters;
     hal::UnexpectedFrames unknown;  ///< frames with identifiers that no device of the description has
     hal::UnexpectedFrames rejected; ///< frames with known identifiers and invalid content
+    std::uint64_t strays = 0;       ///< frames that were left out because their stamps were ahead
+    std::uint64_t late_moments = 0; ///< triggers that came too late for a sample
 };
 
 struct ReplayedBus {

@@ -146,6 +146,20 @@ TEST_CASE("a wrench is learned only if its full scales are on the bus") {
     CHECK_THAT(out.str(), Catch::Matchers::EndsWith(",nan,0,waiting_for_full_scale\n"));
 }
 
+TEST_CASE("a frame stamped an hour ahead is left out, counted and printed") {
+    const IcubLog log;
+    std::string text = file_content(log.path);
+    const std::string second = "(0000000000.26";
+    text.replace(text.find(second), second.size(), "(0000003600.26");
+    const ReplayedBus replayed = replay_can(log.model, log.bus, log.directory.write("ahead.log", text));
+    CHECK(replayed.bus.strays == 1);
+    CHECK(learned(replayed.replayed) > 450);
+    std::ostringstream out;
+    print_bus(out, replayed.bus);
+    CHECK_THAT(out.str(), Catch::Matchers::ContainsSubstring(
+                              "1 x frames left out, with stamps ahead of those after them\n"));
+}
+
 TEST_CASE("joints on other identifiers give no sample and are named") {
     const IcubLog log;
     std::string text = file_content(bus_folder + "icub_arm_strain.json");

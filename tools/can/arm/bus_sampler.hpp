@@ -34,6 +34,10 @@ class BusSampler {
     std::int64_t start_ns() const noexcept { return sampler_.start_ns(); }
     bool started() const noexcept { return sampler_.started(); }
     std::uint64_t frames() const noexcept { return frames_; }
+    /// Frames that were left out because their stamps were ahead of those after them.
+    std::uint64_t strays() const noexcept { return sampler_.strays(); }
+    /// Triggers that came too late for a sample.
+    std::uint64_t late_moments() const noexcept { return sampler_.late_moments(); }
     const BusArm& arm() const noexcept { return arm_; }
 
   private:
