@@ -61,8 +61,9 @@ SetupFindings check_quantised_positions(const Recording& recording);
 SetupFindings check_stamps(const Recording& recording);
 
 /// Detects outputs whose friction accelerates the joint instead of braking it, without a robot: a mistake if
-/// friction_sign() confirms it.
-SetupFindings check_friction_sign(const Recording& recording, const RecordedMotion& recorded);
+/// friction_sign() confirms it. A wrench has no friction of joints.
+SetupFindings check_friction_sign(const Recording& recording, const RecordedMotion& recorded,
+                                  OutputKind outputs);
 
 /// Detects positions in degrees for one or two joints beyond two turns: a mistake if gravity as a function of
 /// angles in degrees leaves less than half of the variance that it leaves in radians.

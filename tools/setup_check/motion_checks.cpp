@@ -56,10 +56,11 @@ double mean_left(const RecordedMotion& recorded, const MatrixXd& columns) {
 
 } // namespace
 
-SetupFindings check_friction_sign(const Recording& recording, const RecordedMotion& recorded) {
+SetupFindings check_friction_sign(const Recording& recording, const RecordedMotion& recorded,
+                                  OutputKind outputs) {
     SetupFindings findings;
-    if (recorded.outputs.cols() != recorded.motion.position.cols()) {
-        return findings; // a wrench
+    if (outputs == OutputKind::wrench) {
+        return findings; // no output is that of a joint
     }
     for (Index joint = 0; joint < recorded.outputs.cols(); ++joint) {
         if (friction_sign(recorded, joint) == FrictionSign::drives) {

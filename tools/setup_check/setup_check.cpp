@@ -76,7 +76,7 @@ SetupFindings check_setup(const Recording& recording, const SetupQuestion& quest
         append(findings, check_by_robot(recording, question, *recorded));
     }
     if (!any_mistake(findings)) {
-        append(findings, check_friction_sign(recording, *recorded));
+        append(findings, check_friction_sign(recording, *recorded, question.outputs));
     }
     return findings;
 }

@@ -129,6 +129,13 @@ TEST_CASE("a common mistake in a real recording is rejected with its remedy with
                ContainsSubstring(expected.words));
 }
 
+TEST_CASE("the six values of a wrench on an arm of six joints have no friction of joints") {
+    const Recording reversed =
+        with_mistake(currents("ur5_kufieta/Movement_No5_Acc_slow_no_disturbance.csv"), "sign of one output");
+    REQUIRE_THAT(mistakes_in(reversed, {OutputKind::motor_current}), ContainsSubstring("columns q2 and i2"));
+    CHECK(mistakes_in(reversed, {OutputKind::wrench}) == "");
+}
+
 TEST_CASE("with a robot wrong signs and exchanged columns of a real recording are rejected by name") {
     const Expected expected =
         GENERATE(Expected{"sign of one output", "i2: expected the sign of the robot's model"},
