@@ -2,6 +2,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/tools/support/all_inputs.hpp"
 #include "tests/tools/support/small_model.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/model/file/model_file.hpp"
@@ -15,12 +16,10 @@
 namespace {
 
 using namespace dfdyn::tools;
+using dfdyn::tests::all_inputs;
 using dfdyn::tests::numbers;
 using dfdyn::tests::small_model;
 using dfdyn::tests::small_physics_model;
-
-constexpr InputKind all_inputs[] = {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR,
-                                    InputKind::DFSR};
 
 /// The error message for `text`, or nothing if it is a valid model.
 std::optional<std::string> refusal(const std::string& text) {
@@ -46,7 +45,7 @@ TEST_CASE("a model with physics of any structure reads back") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const char* structure : {"P", "SP", "SP2", "SPK"}) {
         for (const bool wrench : {false, true}) {
-            for (const InputKind kind : all_inputs) {
+            for (const InputKind kind : all_inputs()) {
                 CAPTURE(structure, wrench, input_description(kind).name);
                 const std::string text = model_to_json(small_physics_model(engine, structure, kind, wrench));
                 CHECK(model_to_json(model_from_json(text, "m.json")) == text);
@@ -110,7 +109,7 @@ TEST_CASE("an impossible model with physics is rejected") {
 
 TEST_CASE("a model reads back bit for bit in single precision") {
     DFDYN_SEEDED_ENGINE(engine);
-    for (const InputKind kind : all_inputs) {
+    for (const InputKind kind : all_inputs()) {
         CAPTURE(input_description(kind).name);
         const TrainedModel written = small_model(engine, kind);
         const std::string text = model_to_json(written);

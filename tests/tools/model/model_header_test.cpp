@@ -2,6 +2,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/tools/support/all_inputs.hpp"
 #include "tests/tools/support/small_model.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/header/header_text.hpp"
@@ -117,8 +118,7 @@ void check_header(const TrainedModel& written) {
 
 TEST_CASE("the header compiles without exceptions and predicts as the model file does") {
     DFDYN_SEEDED_ENGINE(engine);
-    for (const InputKind kind :
-         {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR}) {
+    for (const InputKind kind : dfdyn::tests::all_inputs()) {
         CAPTURE(input_description(kind).name);
         check_header(small_model(engine, kind));
     }

@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/support/all_inputs.hpp"
 #include "tests/tools/support/small_model.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/inputs/input_description.hpp"
@@ -54,8 +55,7 @@ TEST_CASE("each effect of the firmware has an identity of its own") {
 
 TEST_CASE("an estimator continues from its snapshot as it did when the snapshot was taken") {
     DFDYN_SEEDED_ENGINE(engine);
-    const auto kind =
-        GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
+    const auto kind = GENERATE(from_range(dfdyn::tests::all_inputs()));
     const std::string structure = GENERATE("NP", "P", "SP", "SPK");
     const TrainedModel model =
         structure == "NP" ? small_model(engine, kind) : small_physics_model(engine, structure, kind, true);

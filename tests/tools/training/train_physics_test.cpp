@@ -2,6 +2,7 @@
 #include "tools/training/train.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/tools/support/all_inputs.hpp"
 #include "tests/tools/training/physics_arm.hpp"
 
 #include <algorithm>
@@ -38,8 +39,7 @@ class WithRoundingColumn final : public tools::Regressor {
 
 TEST_CASE("every model with every input predicts its training data from its stored numbers alone") {
     const auto model = GENERATE(&structures::P, &structures::SP, &structures::SP2, &structures::SPK);
-    const auto input =
-        GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
+    const auto input = GENERATE(from_range(dfdyn::tests::all_inputs()));
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(model->name, static_cast<int>(input));
     Arm arm;

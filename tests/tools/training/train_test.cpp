@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/support/all_inputs.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
@@ -76,8 +77,7 @@ tools::TrainingData with_standstill(tools::TrainingData data, Index rows) {
 }
 
 TEST_CASE("training fills the complete model for every input") {
-    const auto kind =
-        GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
+    const auto kind = GENERATE(from_range(dfdyn::tests::all_inputs()));
     CAPTURE(static_cast<int>(kind));
     const tools::TrainingData data = three_joints();
     const tools::TrainedModel model = trained(data, quick_options(kind));

@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/support/all_inputs.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/numerics.hpp"
 #include "tests/tools/training/synthetic_physics.hpp"
@@ -75,8 +76,7 @@ void check_gradient(const tools::Likelihood& likelihood, const VectorXd& theta) 
 
 TEST_CASE("the gradients of all models with all inputs equal finite differences") {
     const std::string name = GENERATE("NP", "P", "PD", "SP", "SPK", "SPKD");
-    const auto input =
-        GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
+    const auto input = GENERATE(from_range(dfdyn::tests::all_inputs()));
     const bool own_motion = GENERATE(false, true);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(name, static_cast<int>(input), own_motion);
