@@ -50,6 +50,11 @@ CentralBody central_body(const InertialParameters& parameters) {
     return body;
 }
 
+CentralInertia central_inertia(const InertialParameters& parameters) {
+    const Eigen::Matrix3d inertia = central_body(parameters).inertia;
+    return {inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2)};
+}
+
 Eigen::Matrix4d pseudo_inertia(const InertialParameters& parameters) {
     Eigen::Matrix4d moments;
     moments.topLeftCorner<3, 3>() = trace_minus(symmetric(parameters.tail<6>()), 0.5);

@@ -25,6 +25,10 @@ struct CentralBody {
 /// Returns the body of these parameters. Its centre is the link's origin if it has no mass.
 CentralBody central_body(const InertialParameters& parameters);
 
+/// Moments and products of inertia about the centre of mass: xx yy zz xy xz yz, kg·m².
+using CentralInertia = Eigen::Matrix<double, 6, 1>;
+CentralInertia central_inertia(const InertialParameters& parameters);
+
 /// Returns the second moments of the mass distribution, as a 4x4 matrix linear in the parameters: the
 /// integral of (x, 1) (x, 1)ᵀ dm. A body can have these parameters if and only if it is positive definite
 /// (semidefinite for bodies without volume). A positive mass and the triangle inequality of the principal

@@ -85,6 +85,9 @@ TEST_CASE("a body is taken apart into mass and centre and inertia about the cent
     CHECK(body.mass == 2);
     CHECK((body.centre - centre).norm() < 1e-15);
     CHECK((body.inertia - inertia).norm() < 1e-15);
+    tools::CentralInertia expected;
+    expected << 0.02, 0.03, 0.04, 0.001, -0.002, 0.003;
+    CHECK((tools::central_inertia(parameters) - expected).norm() < 1e-15);
 }
 
 TEST_CASE("physically impossible parameters are detected in any frame") {
