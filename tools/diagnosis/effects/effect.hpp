@@ -92,6 +92,9 @@ struct Effect {
     bool mass_of_link = false;  ///< small errors of all links' masses could explain it as well
     /// A chosen candidate is kept even when a later scan of the residual does not find it again.
     bool kept_while_chosen = false;
+    /// Its columns resemble a combination of other effects'. If a round of the search chooses one of its
+    /// `candidates` and the search does not keep it, the result is that of a search without them.
+    bool yields = false;
     /// Its parameters begin with start and end (s). Overlapping findings at one place are the same finding.
     bool interval = false;
     /// log-odds subtracted from its findings, because real noise has similar bursts

@@ -2,6 +2,7 @@
 #include "tools/diagnosis/search/candidate_choice.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace dfdyn::tools {
 
@@ -23,6 +24,26 @@ std::optional<std::size_t> own_joint(const DiagnosisSignals& signals, const Cand
 bool visible(const DiagnosisSignals& signals, const Candidate& candidate) {
     const std::optional<std::size_t> joint = own_joint(signals, candidate);
     return !joint || !signals.hardly_moves(*joint);
+}
+
+bool yields(const Candidate& candidate) { return has_trait(candidate.effect, &Effect::yields); }
+
+bool has_yielding(const FittedEffects& effects) {
+    return std::ranges::any_of(
+        effects.chosen, [&](const ChosenShape& one) { return yields(effects.candidates[one.candidate]); });
+}
+
+void set_classes(FittedEffects& effects) {
+    const auto unnamed = std::ranges::count_if(effects.candidates, std::not_fn(&Candidate::named));
+    const auto yielding = std::ranges::count_if(effects.candidates, yields);
+    const auto named = std::ssize(effects.candidates) - unnamed;
+    for (std::size_t i = 0; i < effects.candidates.size(); ++i) {
+        const Candidate& one = effects.candidates[i];
+        effects.problem.candidates[i].candidates_of_class =
+            static_cast<double>(!one.named()  ? unnamed
+                                : yields(one) ? named
+                                              : named - yielding);
+    }
 }
 
 Candidate relinearized(const Candidate& chosen, const EffectShape& shape,

@@ -19,6 +19,17 @@ struct KeptChoice {
 /// Returns false for a candidate at a joint that hardly moves.
 bool visible(const DiagnosisSignals& signals, const Candidate& candidate);
 
+/// Returns whether the candidate is of an effect that yields to others (`Effect::yields`).
+bool yields(const Candidate& candidate);
+
+/// Returns whether such a candidate is chosen.
+bool has_yielding(const FittedEffects& effects);
+
+/// Sets the number of candidates of each one's class, which is its prior: the unnamed ones, or the named ones
+/// without those that yield. For these it is the number of all named ones. They do not change the prior of
+/// the others.
+void set_classes(FittedEffects& effects);
+
 /// Returns a chosen candidate, relinearized about its estimate. The number of its new shapes does not change
 /// its prior.
 Candidate relinearized(const Candidate& chosen, const EffectShape& shape,

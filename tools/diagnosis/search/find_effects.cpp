@@ -27,12 +27,13 @@ constexpr double mass_deviation = 0.058;
 
 class Search {
   public:
-    Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, const FitOptions& options)
+    Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, const FitOptions& options,
+           bool with_yielding)
         : signals_(signals), options_(options), rows_(signals.measured),
           regression_(rows_, measured - signals.nominal, rows_.frames_within(options.fitted_share)) {
         add_nuisance();
         for (Candidate& candidate : lasting_candidates(signals_, options_.effects)) {
-            if (visible(signals_, candidate)) {
+            if (visible(signals_, candidate) && (with_yielding || !yields(candidate))) {
                 static_.emplace_back(rows_, std::move(candidate));
             }
         }
@@ -50,34 +51,18 @@ class Search {
     }
 
     FittedEffects run() {
-        std::vector<std::string> last;
-        for (int round = 0; round < most_rounds; ++round) {
-            if (options_.progress) {
-                options_.progress(round);
-            }
-            const std::vector<CandidateEntry> dependent = model_dependent();
-            refine();
-            gather(dependent);
-            result_.chosen = search_effects(result_.problem, result_.chosen);
-            result_.fit = fit_effects(result_.problem, result_.chosen);
-            // with the spectrum of a residual that still contains effects, these effects would be taken for
-            // noise
-            estimate_noise(round + 1 < white_rounds);
-            if (round + 1 == white_rounds) {
-                reset_event_thresholds();
-            }
-            std::vector<std::string> keys = chosen_keys(result_);
-            if (keys == last && round > white_rounds) {
-                break;
-            }
-            last = std::move(keys);
-        }
+        settle();
         prune(result_, regression_);
         make_robust(result_, regression_);
         return std::move(result_);
     }
 
+    /// Returns whether a candidate that yields was chosen at the end of any round: it may have changed the
+    /// choice of others.
+    bool chose_yielding() const { return chose_yielding_; }
+
   private:
+    void settle();
     void add_nuisance();
     FittedModel fitted_model() const;
     FittedResidual fitted_residual() const;
@@ -87,7 +72,6 @@ class Search {
     std::vector<CandidateEntry> model_dependent() const;
     void refine();
     void place_nuisance();
-    void count_candidates();
     void set_candidates(const std::vector<CandidateEntry>& entries);
     void gather(const std::vector<CandidateEntry>& model_dependent);
     void estimate_noise(bool white);
@@ -104,10 +88,37 @@ class Search {
     std::vector<Scan> scans_;
     EffectRegression regression_;
     std::vector<CandidateEntry> static_; ///< candidates that do not depend on the current model
+    bool chose_yielding_ = false;
     std::vector<SpectralColumnPointer> nuisance_;
     std::vector<double> nuisance_deviation_;
     FittedEffects result_;
 };
+
+/// Searches in rounds until nothing changes.
+void Search::settle() {
+    std::vector<std::string> last;
+    for (int round = 0; round < most_rounds; ++round) {
+        if (options_.progress) {
+            options_.progress(round);
+        }
+        const std::vector<CandidateEntry> dependent = model_dependent();
+        refine();
+        gather(dependent);
+        result_.chosen = search_effects(result_.problem, result_.chosen);
+        result_.fit = fit_effects(result_.problem, result_.chosen);
+        chose_yielding_ = chose_yielding_ || has_yielding(result_);
+        // with the spectrum of a residual that still contains effects, these effects would be taken for noise
+        estimate_noise(round + 1 < white_rounds);
+        if (round + 1 == white_rounds) {
+            reset_event_thresholds();
+        }
+        std::vector<std::string> keys = chosen_keys(result_);
+        if (keys == last && round > white_rounds) {
+            break;
+        }
+        last = std::move(keys);
+    }
+}
 
 /// Adds the nuisance parameters: small errors of the links' masses, and unknown torque constants.
 void Search::add_nuisance() {
@@ -227,16 +238,6 @@ void Search::place_nuisance() {
     }
 }
 
-/// Counts the candidates of each class: named and unnamed.
-void Search::count_candidates() {
-    const auto named = std::ranges::count_if(result_.candidates, &Candidate::named);
-    const auto unnamed = std::ssize(result_.candidates) - named;
-    for (std::size_t i = 0; i < result_.candidates.size(); ++i) {
-        result_.problem.candidates[i].candidates_of_class =
-            static_cast<double>(result_.candidates[i].named() ? named : unnamed);
-    }
-}
-
 /// Replaces the candidates of the problem. Their columns follow the nuisance parameters'.
 void Search::set_candidates(const std::vector<CandidateEntry>& entries) {
     std::vector<SpectralColumnPointer> columns = nuisance_;
@@ -276,7 +277,7 @@ void Search::gather(const std::vector<CandidateEntry>& model_dependent) {
     }
     entries.insert(entries.end(), model_dependent.begin(), model_dependent.end());
     set_candidates(entries);
-    count_candidates();
+    set_classes(result_);
     place_nuisance();
     result_.problem.sums = regression_.weighted_sums();
     choose_again(result_, chosen);
@@ -322,7 +323,14 @@ void Search::reset_event_thresholds() {
 
 FittedEffects find_effects(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                            const FitOptions& options) {
-    return Search(signals, measured, options).run();
+    {
+        Search all(signals, measured, options, true);
+        FittedEffects effects = all.run();
+        if (!all.chose_yielding() || has_yielding(effects)) {
+            return effects;
+        }
+    } // the second search needs its memory
+    return Search(signals, measured, options, false).run();
 }
 
 } // namespace dfdyn::tools
