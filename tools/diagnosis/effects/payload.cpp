@@ -222,7 +222,7 @@ Effect effects::payload() {
             .where = "tool",
             .parameters = {payload_mass, payload_centre[0], payload_centre[1], payload_centre[2],
                            payload_attached},
-            .remark = " where it was taken up on the way",
+            .remark = " if it was picked up during the recording",
             .evidence = "is that of a mass fixed to the tool",
             .experiment = "take everything off the tool and record the same motion again",
             .in_extended_model = "adapting: the rigid body's parameters start there",

@@ -157,7 +157,7 @@ TEST_CASE("a push at a joint at rest is reported with its force and the share th
     CHECK(peak.value == Approx(-30 - 5 - 4.5));
     CHECK(peak.high == Approx(-30 + 1.96 * std::hypot(0.5, 2)));
     CHECK(peak.low == Approx(-40 - 9 - 1.96 * std::hypot(0.5, 2)));
-    CHECK(finding.evidence.find("joint3 stands") == 0);
+    CHECK(finding.evidence.find("joint3 is stationary") == 0);
     CHECK(finding.evidence.find("10 ± 3.92 N·m") != std::string::npos);
     CHECK(finding.share == push.share);
 }
