@@ -51,6 +51,7 @@ const std::vector<EffectTest>& effect_tests() {
         {"actuator_gain", {700, no_seed}},
         {"payload", {700, 700}},
         {"link_inertia_error", {701, 700}},
+        {"link_rotational_inertia_error", {701, no_seed}},
         {"gravity_tilt", {700, 700}},
         {"encoder_offset", {700, 700}},
         {"encoder_eccentricity", {700, 701}},

@@ -73,6 +73,7 @@ const std::vector<Effect>& effect_catalogue() {
         payload(),
         gravity_tilt(),
         link_inertia_error(),
+        link_rotational_inertia_error(),
         encoder_offset(),
         encoder_eccentricity(),
         joint_flexibility(),

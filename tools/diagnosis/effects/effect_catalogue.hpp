@@ -26,6 +26,7 @@ Effect external_contact();
 Effect payload();
 Effect gravity_tilt();
 Effect link_inertia_error();
+Effect link_rotational_inertia_error();
 Effect encoder_offset();
 Effect encoder_eccentricity();
 Effect joint_flexibility();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel/effects/panel_effect.hpp"
+#include "tools/robot/inertia.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -75,14 +76,58 @@ DrawnEffect link_centre(const EffectDraw& of, std::size_t link) {
     return effect;
 }
 
-/// Draws an error of a link that has mass and that is beyond the F/T sensor if there is one.
-DrawnEffect link_error(const EffectDraw& of) {
+/// m²: moment of inertia of a link whose mass is 0.14 m from its centre, divided by its mass
+constexpr double reach_squared = 0.02;
+
+/// Returns the moments of inertia of a box with random edges, divided by the largest possible one.
+Eigen::Vector3d draw_box(Draw& draw) {
+    const Eigen::Array3d squares =
+        Eigen::Array3d(draw.uniform(0.2, 1), draw.uniform(0.2, 1), draw.uniform(0.2, 1)).square();
+    return (squares.sum() - squares) / squares.sum();
+}
+
+/// The link has moments of inertia that the robot's file lacks: those of a box. Where the file has those of a
+/// larger body, a placeholder, the link has less: a share of them is missing.
+DrawnEffect link_moments(const EffectDraw& of, std::size_t link) {
+    const InertialParameters& body = of.setup.robot.joints[link].inertia;
+    const Eigen::Vector3d nominal = central_body(body).inertia.diagonal();
+    const bool placeholder = nominal.sum() / 2 > reach_squared * body[0];
+    const Eigen::Vector3d change = placeholder ? Eigen::Vector3d(-nominal) : draw_box(of.draw);
+    DrawnEffect effect;
+    effect.hide = [link, change](double size, Scenario& scenario) {
+        scenario.robot_errors.links.push_back({link, 0, Eigen::Vector3d::Zero(), size * change});
+    };
+    effect.parameters = [change](double size) {
+        return largest_first({{"delta_ixx", size * change.x()},
+                              {"delta_iyy", size * change.y()},
+                              {"delta_izz", size * change.z()}});
+    };
+    effect.guess = guess_along_reference(of, effect.hide, 1e-3);
+    effect.largest = placeholder ? 0.9 : reach_squared * body[0];
+    return effect;
+}
+
+/// Draws a link with mass from `least` on that is beyond the F/T sensor if there is one.
+std::size_t draw_link(const EffectDraw& of, std::size_t least) {
     const Robot& robot = of.setup.robot;
-    const std::size_t first = of.setup.wrench() ? robot.sensor->link : 0;
-    const std::size_t link = first + of.draw.below(robot.joints.size() - first);
-    DrawnEffect effect = of.draw.chance(0.5) ? link_mass(of, link) : link_centre(of, link);
+    const std::size_t first = of.setup.wrench() ? std::max(robot.sensor->link, least) : least;
+    return first + of.draw.below(robot.joints.size() - first);
+}
+
+DrawnEffect at_link(std::size_t link, DrawnEffect effect) {
     effect.where = "link" + std::to_string(link + 1);
     return effect;
+}
+
+DrawnEffect link_error(const EffectDraw& of) {
+    const std::size_t link = draw_link(of, 0);
+    return at_link(link, of.draw.chance(0.5) ? link_mass(of, link) : link_centre(of, link));
+}
+
+/// The first link's inertia is that of its joint's rotor as well.
+DrawnEffect link_rotation(const EffectDraw& of) {
+    const std::size_t link = draw_link(of, 1);
+    return at_link(link, link_moments(of, link));
 }
 
 DrawnEffect tilt(const EffectDraw& of) {
@@ -146,6 +191,7 @@ namespace hidden_effects {
 
 DrawnEffect payload(const EffectDraw& of) { return mass_at_tool(of); }
 DrawnEffect link_inertia_error(const EffectDraw& of) { return link_error(of); }
+DrawnEffect link_rotational_inertia_error(const EffectDraw& of) { return link_rotation(of); }
 DrawnEffect gravity_tilt(const EffectDraw& of) { return tilt(of); }
 DrawnEffect encoder_offset(const EffectDraw& of) { return at_encoder(of, shifted_zero); }
 DrawnEffect encoder_eccentricity(const EffectDraw& of) { return at_encoder(of, eccentricity); }

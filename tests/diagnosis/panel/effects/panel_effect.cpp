@@ -28,6 +28,7 @@ DrawnEffect joint_flexibility(const EffectDraw& of);
 DrawnEffect actuator_gain(const EffectDraw& of);
 DrawnEffect payload(const EffectDraw& of);
 DrawnEffect link_inertia_error(const EffectDraw& of);
+DrawnEffect link_rotational_inertia_error(const EffectDraw& of);
 DrawnEffect gravity_tilt(const EffectDraw& of);
 DrawnEffect ft_bias(const EffectDraw& of);
 DrawnEffect ft_drift(const EffectDraw& of);
@@ -80,6 +81,7 @@ constexpr auto catalogue = std::to_array<CatalogueEntry>({
     {"delay", Shows::both, hidden_effects::delay},
     {"friction_drift", Shows::torque, hidden_effects::friction_drift},
     {"external_contact", Shows::both, hidden_effects::external_contact},
+    {"link_rotational_inertia_error", Shows::both, hidden_effects::link_rotational_inertia_error, true},
 });
 
 /// The robot with the bodies of all payloads, including those that are attached later.
