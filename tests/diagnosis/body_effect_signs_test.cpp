@@ -127,6 +127,33 @@ TEST_CASE("a link's error is true minus nominal mass at the centre of mass or a 
     }
 }
 
+TEST_CASE("a link's rotational inertia error is true minus nominal inertia about the centre of mass") {
+    for (std::uint64_t trial_seed = seed(); trial_seed < seed() + 4; ++trial_seed) {
+        const EffectTrial trial =
+            try_effect("link_rotational_inertia_error", "three_joint_torque", trial_seed);
+        const auto link = static_cast<std::size_t>(trial.joint());
+        const InertialParameters& body = trial.setup.robot.joints[link].inertia;
+        const Eigen::Vector3d centre = body.segment<3>(1) / body[0];
+        const Eigen::Vector3d inertia(trial.parameter("delta_ixx"), trial.parameter("delta_iyy"),
+                                      trial.parameter("delta_izz"));
+        const Eigen::Vector3d second_moments = (inertia.sum() / 2 - inertia.array()).matrix();
+        check_torque_addition(trial, 1e-3, [&](const SimulatedSample& sample) {
+            // as two point masses on each axis, whose mass is taken off at the centre
+            constexpr double distance = 0.1;
+            JointVector torque = JointVector::Zero(sample.truth.position.size());
+            for (Eigen::Index axis = 0; axis < 3; ++axis) {
+                const double mass = second_moments[axis] / (2 * distance * distance);
+                for (const double part : {-1.0, 0.0, 1.0}) {
+                    torque +=
+                        point_mass_torque(trial.setup.robot, sample.truth, link, part == 0 ? -2 * mass : mass,
+                                          centre + part * distance * Eigen::Vector3d::Unit(axis));
+                }
+            }
+            return torque;
+        });
+    }
+}
+
 TEST_CASE("a tilt rotates the base by tilt_x and then by tilt_y about the root's axes") {
     const EffectTrial trial = try_effect("gravity_tilt", "three_joint_torque", seed());
     Robot tilted = trial.setup.robot;

@@ -10,8 +10,10 @@
 #include "tools/simulation/arm/lugre_friction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace {
 
@@ -61,6 +63,31 @@ TEST_CASE("a payload is a point mass at the tip and a link's mass error one at i
     const InertialParameters& third = signals.robot.joints[2].inertia;
     check_same(contribution(signals, find(candidates, "link_inertia_error", "link3"), 0),
                with_mass(2, third.segment<3>(1) / third[0]), 1e-9);
+}
+
+TEST_CASE("a link's moments of inertia act as those of another link, and as a rotor at the first joint") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const std::vector<Candidate> candidates = lasting_candidates(signals);
+    const Candidate& third = find(candidates, "link_rotational_inertia_error", "link3");
+    const std::array<std::pair<Index, Index>, 6> elements{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+    for (std::size_t element = 0; element < elements.size(); ++element) {
+        CAPTURE(element);
+        const auto [row, column] = elements[element];
+        Robot other = signals.robot;
+        CentralBody body = central_body(other.joints[2].inertia);
+        body.inertia(row, column) += 1;
+        body.inertia(column, row) += row == column ? 0 : 1;
+        other.joints[2].inertia = body_parameters(body.mass, body.centre, body.inertia);
+        const MatrixXd change = rigid_outputs(other, signals.kind, signals.measured.motion) - signals.nominal;
+        check_same(contribution(signals, third, element + 1), change, 1e-9); // column 0 is the scale
+    }
+    const auto has = [&](const std::string& where) {
+        return std::ranges::any_of(candidates, [&](const Candidate& one) {
+            return one.effect == "link_rotational_inertia_error" && one.where == where;
+        });
+    };
+    CHECK(has("link2"));
+    CHECK_FALSE(has("link1"));
 }
 
 TEST_CASE("the columns of encoder errors are the change of the rigid-body torques at the true positions") {

@@ -175,9 +175,10 @@ TEST_CASE("the extended model of joint torques adds what the columns of the diag
     candidates.push_back(ripple_candidate(*signals, 2, {3, 40}));
     candidates.back().effect = "torque_ripple";
     const std::map<std::string, int> carried = check_all(signals, candidates, engine);
-    for (const char* effect : {"viscous_friction", "coulomb_friction", "stribeck_friction", "torque_offset",
-                               "rotor_inertia", "joint_spring", "torque_ripple", "actuator_gain", "payload",
-                               "link_inertia_error", "gravity_tilt", "encoder_offset"}) {
+    for (const char* effect :
+         {"viscous_friction", "coulomb_friction", "stribeck_friction", "torque_offset", "rotor_inertia",
+          "joint_spring", "torque_ripple", "actuator_gain", "payload", "link_inertia_error",
+          "link_rotational_inertia_error", "gravity_tilt", "encoder_offset"}) {
         CAPTURE(effect);
         CHECK(carried.contains(effect));
     }
@@ -191,7 +192,7 @@ TEST_CASE("the extended model of a wrench adds what the columns of the diagnosis
     const std::vector<Candidate> candidates = all_candidates(*signals);
     const std::map<std::string, int> carried = check_all(signals, candidates, engine);
     for (const char* effect : {"ft_bias", "ft_gain", "ft_rotation", "payload", "link_inertia_error",
-                               "gravity_tilt", "encoder_offset"}) {
+                               "link_rotational_inertia_error", "gravity_tilt", "encoder_offset"}) {
         CAPTURE(effect);
         CHECK(carried.contains(effect));
     }
