@@ -5,12 +5,11 @@
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
+#include "tools/diagnosis/recordings/link_finding.hpp"
 #include "tools/diagnosis/verdict/findings.hpp"
-#include "tools/diagnosis/verdict/found_parameters.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -87,7 +86,10 @@ class BodyNamer {
     std::vector<Finding>& findings() { return work_.diagnosis.findings; }
     const PooledFit& fit() const { return several_.answer.fit; }
 
-    static bool is_link(const Finding& one) { return one.effect == effects::link_inertia_error().name; }
+    static bool is_link(const Finding& one) {
+        const Effect* const effect = find_effect(one.effect);
+        return effect != nullptr && effect->each == Each::body;
+    }
 
     /// A load that was taken up on the way, with its time as a fifth parameter, was no hypothesis.
     static bool is_load(const Finding& one) {
@@ -114,16 +116,14 @@ class BodyNamer {
 
     void add_link(const ArmHypothesis& link) {
         const Index first = 10 * *link.body;
-        const VectorXd nominal = nominal_parameters(signals_.robot, signals_.kind).segment<10>(first);
-        const Eigen::Matrix<double, 10, 1> change = fit().value.segment<10>(first);
+        const InertialParameters nominal =
+            nominal_parameters(signals_.robot, signals_.kind).segment<10>(first);
+        const InertialParameters change = fit().value.segment<10>(first);
         if (!(mass_of(link) > 0)) {
             return; // no body has this mass
         }
-        Finding finding;
-        finding.effect = effects::link_inertia_error().name;
+        Finding finding = link_finding(nominal, change, fit().covariance.block<10, 10>(first, first));
         finding.where = place(*link.body);
-        add_mass_and_centre(finding, {"delta_mass", "delta_com_x", "delta_com_y", "delta_com_z"}, change,
-                            fit().covariance.block<10, 10>(first, first), nominal);
         finding.margin_to_nothing = link.margin;
         finding.confidence = calibrated_confidence(finding, several_.seconds);
         for (const Index other : link.others) {
@@ -137,8 +137,8 @@ class BodyNamer {
         Finding finding;
         finding.effect = effects::payload().name;
         finding.where = "tool";
-        add_mass_and_centre(finding, {"mass", "com_x", "com_y", "com_z"}, load.parameters, load.covariance,
-                            VectorXd::Zero(10));
+        finding.parameters = mass_and_centre({"mass", "com_x", "com_y", "com_z"}, InertialParameters::Zero(),
+                                             load.parameters, load.covariance);
         finding.margin_to_nothing = load.margin;
         finding.confidence = load_confidence(load.margin);
         VectorXd there = VectorXd::Ones(signals_.rows());
@@ -163,25 +163,6 @@ class BodyNamer {
         return "a load of " + number_text(load.parameters.front().value) +
                " kg, fitted to the whole recording, is subtracted from the outputs of " + load.only_in +
                ": errors, also those on held-out time, curves and the extended model are without it";
-    }
-
-    /// Adds mass and centre of mass of a body that changes by `change`, as differences from `nominal`.
-    static void add_mass_and_centre(Finding& finding, const std::array<const char*, 4>& names,
-                                    const Eigen::Matrix<double, 10, 1>& change,
-                                    const Eigen::Matrix<double, 10, 10>& covariance,
-                                    const VectorXd& nominal) {
-        const double mass = nominal[0] + change[0];
-        finding.parameters = {parameter_within(names[0], "kg", change[0], std::sqrt(covariance(0, 0)))};
-        for (Index axis = 1; axis <= 3; ++axis) {
-            const double centre = (nominal[axis] + change[axis]) / mass;
-            const double before = nominal[0] > 0 ? nominal[axis] / nominal[0] : 0;
-            Eigen::Vector2d slope(-centre / mass, 1 / mass); // by mass and first moment
-            const std::array<Index, 2> both{0, axis};
-            const double variance = slope.dot(covariance(both, both) * slope);
-            finding.parameters.push_back(parameter_within(names[static_cast<std::size_t>(axis)], "m",
-                                                          centre - before,
-                                                          std::sqrt(std::max(0.0, variance))));
-        }
     }
 
     void push(Finding finding, const MatrixXd& share) {
