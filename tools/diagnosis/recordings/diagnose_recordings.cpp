@@ -18,8 +18,8 @@ DiagnosisWork diagnose_recordings(const Robot& robot, std::vector<Recording>& re
     options.parts = recordings;
     const SeveralRecordings several = fit_recordings(robot, recordings, options, loads_differ);
     if (loads_differ && !several.answered()) {
-        throw InputError("a load in single recordings: expected at least two recordings of two seconds "
-                         "without a gap, found " +
+        throw InputError("--changed payload: expected at least two recordings of two seconds without a "
+                         "gap, found " +
                          std::to_string(several.pooled.size()));
     }
     options.torque_gains = several.torque_gains;
