@@ -78,11 +78,7 @@ void print_finding(std::ostream& out, const Diagnosis& diagnosis, const Finding&
             << rounded_text(finding.spread) << '\n';
     }
     if (!finding.indistinguishable.empty()) {
-        out << "        this motion hardly distinguishes it from: ";
-        for (std::size_t i = 0; i < finding.indistinguishable.size(); ++i) {
-            out << (i == 0 ? "" : "; ") << cause_words(finding.indistinguishable[i]);
-        }
-        out << '\n';
+        out << "        this motion hardly distinguishes it from: " << tie_words(finding) << '\n';
     }
 }
 

@@ -110,11 +110,8 @@ ReportTable alternatives_table(const Finding& finding) {
 }
 
 std::string tie_sentence(const Finding& finding) {
-    std::string text = "This motion hardly distinguishes it from ";
-    for (std::size_t i = 0; i < finding.indistinguishable.size(); ++i) {
-        text.append(i == 0 ? "" : "; ").append(cause_words(finding.indistinguishable[i]));
-    }
-    return text.append(". Each of them may be the true cause: all reduce the error equally.");
+    return "This motion hardly distinguishes it from " + tie_words(finding) +
+           ". Each of them may be the true cause: all reduce the error equally.";
 }
 
 } // namespace

@@ -73,6 +73,17 @@ std::string cause_words(const Finding& finding) {
     return finding.detail.empty() ? text : text.append(", ").append(finding.detail);
 }
 
+std::string tie_words(const Finding& finding) {
+    constexpr std::size_t most_named = 3;
+    const std::size_t named = std::min(most_named, finding.indistinguishable.size());
+    std::string text;
+    for (std::size_t i = 0; i < named; ++i) {
+        text.append(text.empty() ? "" : "; ").append(cause_words(finding.indistinguishable[i]));
+    }
+    const std::size_t others = finding.indistinguishable.size() - named;
+    return others == 0 ? text : text + "; " + std::to_string(others) + (others == 1 ? " other" : " others");
+}
+
 std::string interval_words(const FoundParameter& parameter) {
     const std::string high = std::isinf(parameter.high) ? "∞" : rounded_text(parameter.high);
     return rounded_text(parameter.low) + " … " + high;

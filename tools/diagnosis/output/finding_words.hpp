@@ -32,6 +32,10 @@ std::string main_parameter_words(const Finding& finding);
 std::string cause_words(const Finding& finding);
 std::string cause_words(const OtherCause& cause);
 
+/// Returns the causes that this motion hardly distinguishes from the finding, the closest three and the
+/// number of the others: `payload at tool; link inertia error at link5; torque offset at joint3; 2 others`.
+std::string tie_words(const Finding& finding);
+
 /// Returns `link2 3.1 (2.9 … 3.3) instead of 3`, without the unit.
 std::string nuisance_words(const NuisanceEstimate& nuisance);
 

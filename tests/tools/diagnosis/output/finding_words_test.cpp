@@ -42,4 +42,18 @@ TEST_CASE(
           "coulomb_neg 3 N·m (2.8 … 3.2)");
 }
 
+TEST_CASE("of many indistinguishable causes the closest three are named and the others are counted") {
+    Finding finding;
+    for (const char* const where : {"link5", "link4", "link3", "link2", "link1"}) {
+        finding.indistinguishable.push_back({"link_inertia_error", where, {}});
+    }
+    const std::string three =
+        "link inertia error at link5; link inertia error at link4; link inertia error at link3";
+    CHECK(tie_words(finding) == three + "; 2 others");
+    finding.indistinguishable.pop_back();
+    CHECK(tie_words(finding) == three + "; 1 other");
+    finding.indistinguishable.pop_back();
+    CHECK(tie_words(finding) == three);
+}
+
 } // namespace finding_words_test
