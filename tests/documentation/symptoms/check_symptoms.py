@@ -112,9 +112,9 @@ def whole_recording(trial):
                 trial.run("train", *trial.quickly(), "--log", "reversed.csv", "-o", "other.json"))
     diagnosis = trial.run("diagnose", *UR5, "--log", NO6, "--outputs", "i", "--quiet", "-o", "diagnosis")
     trial.shows("the causes found err more than plain least squares per joint", diagnosis)
-    pushed = DATA / "ur5_kufieta" / "Movement_No7_Acc_slow_Verify_Model_short_with_disturbance.csv"
+    few_motions = DATA / "ur5_kufieta" / "Movement_No2.csv"
     trial.shows("this motion hardly distinguishes it from:",
-                trial.run("diagnose", *UR5, "--log", pushed, "--outputs", "i", "--quiet", "-o", "pushed"))
+                trial.run("diagnose", *UR5, "--log", few_motions, "--outputs", "i", "--quiet", "-o", "few_motions"))
     trial.shows("expected a new or empty folder, found files in it", trial.run("start", "--log", NO6, "--outputs", "i", "-o", "diagnosis"))
     jittering = DATA / "ur5_kufieta" / "Movement_No3_Acc.csv"
     trial.shows("the time steps are not constant:", trial.run("start", "--log", jittering, "--outputs", "i", "--quick", "-o", "look"))
