@@ -78,8 +78,8 @@ RobotExport corrected_robot(const ModelExtension& extension) {
             result.left_out.push_back(carried.effect + " at " + carried.where);
         }
     }
-    const auto repeated = std::ranges::unique(result.left_out); // the axes of a sensor
-    result.left_out.erase(repeated.begin(), repeated.end());
+    std::vector<std::string>& names = result.left_out; // the axes of a sensor have the same
+    names.erase(std::unique(names.begin(), names.end()), names.end());
     return result;
 }
 
