@@ -24,7 +24,7 @@ std::vector<Candidate> link_candidates(const DiagnosisSignals& signals, std::siz
     const Eigen::Vector3d centre =
         mass > 0 ? Eigen::Vector3d(nominal.segment<3>(10 * index + 1) / mass) : Eigen::Vector3d::Zero();
     Candidate result;
-    result.where = numbered("link", signals.joints() - static_cast<std::size_t>(bodies - index));
+    result.where = numbered("link", signals.link_of(index));
     result.span = index + 1 == bodies ? last_body : "";
     result.columns = mass_columns(signals, index, centre, Eigen::Isometry3d::Identity());
     const auto body = [mass](double delta_mass, const Eigen::VectorXd& moments) {

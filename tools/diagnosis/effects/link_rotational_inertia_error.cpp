@@ -89,11 +89,9 @@ std::vector<EffectShape> shapes_of(const std::vector<EffectColumn>& columns) {
 
 std::vector<Candidate> inertia_candidates(const DiagnosisSignals& signals, std::size_t number) {
     const auto index = static_cast<Eigen::Index>(number);
-    const Eigen::VectorXd robot = nominal_parameters(signals.robot, signals.kind);
-    const Eigen::Index bodies = robot.size() / 10;
-    const InertialParameters body = robot.segment<10>(10 * index);
+    const InertialParameters body = nominal_parameters(signals.robot, signals.kind).segment<10>(10 * index);
     const CentralInertia nominal = central_inertia(body);
-    const std::size_t link = signals.joints() - static_cast<std::size_t>(bodies - index);
+    const std::size_t link = signals.link_of(index);
     const double reach = reach_of_link(signals.robot, link, body);
     Candidate result;
     result.where = numbered("link", link);

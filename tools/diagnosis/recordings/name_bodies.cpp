@@ -96,10 +96,7 @@ class BodyNamer {
         return one.effect == effects::payload().name && one.parameters.size() <= 4;
     }
 
-    std::string place(Index body) const {
-        const Index unseen = std::ssize(signals_.robot.joints) - signals_.regressor.cols() / 10;
-        return numbered("link", static_cast<std::size_t>(unseen + body));
-    }
+    std::string place(Index body) const { return numbered("link", signals_.link_of(body)); }
 
     const ArmHypothesis* supported_link(const std::string& where) const {
         const auto& links = several_.answer.wrong_links;

@@ -42,6 +42,10 @@ struct DiagnosisSignals {
     /// Returns the outputs of a body with these ten parameters that is fixed to link `body` (0: the first
     /// link that influences the outputs).
     Eigen::MatrixXd of_body(Eigen::Index body, const Eigen::Matrix<double, 10, 1>& parameters) const;
+    /// Returns the index of the link (from 0) that `body` is.
+    std::size_t link_of(Eigen::Index body) const {
+        return joints() - static_cast<std::size_t>(regressor.cols() / 10 - body);
+    }
 };
 
 DiagnosisSignals diagnosis_signals(const Robot& robot, OutputKind kind, MeasuredMotion measured);

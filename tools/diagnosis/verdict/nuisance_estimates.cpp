@@ -37,15 +37,14 @@ std::vector<NuisanceEstimate> estimate_nuisances(const DiagnosisSignals& signals
                                                  const Eigen::VectorXd& torque_gains) {
     const Eigen::VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
     const Eigen::Index bodies = fitted_effects.uncertain_masses;
-    const auto unseen = signals.joints() - static_cast<std::size_t>(nominal.size() / 10);
     std::vector<NuisanceEstimate> result;
     for (Eigen::Index i = 0; i < std::ssize(fitted_effects.nuisance); ++i) {
         const double factor = fitted_effects.nuisance_factor(i);
         const double reach = factor_reach(fitted_effects.fit, i);
         if (i < bodies) {
             const double mass = nominal[10 * i];
-            result.push_back({numbered("link", unseen + static_cast<std::size_t>(i)),
-                              mass_parameter(mass, factor, reach), mass});
+            result.push_back(
+                {numbered("link", signals.link_of(i)), mass_parameter(mass, factor, reach), mass});
         } else {
             result.push_back({numbered("actuator", static_cast<std::size_t>(i - bodies)),
                               constant_parameter(torque_gains[i - bodies], factor, reach), std::nullopt});
