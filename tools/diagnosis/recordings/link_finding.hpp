@@ -4,7 +4,6 @@
 #include "tools/diagnosis/diagnosis.hpp"
 #include "tools/robot/inertia.hpp"
 
-#include <array>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -13,9 +12,8 @@ namespace dfdyn::tools {
 using InertialCovariance = Eigen::Matrix<double, 10, 10>;
 
 /// Returns mass and centre of mass of a body that changes by `change`, as differences from `nominal`, with
-/// these names and their intervals.
-std::vector<FoundParameter> mass_and_centre(const std::array<const char*, 4>& names,
-                                            const InertialParameters& nominal,
+/// their intervals. They are the first four parameters of `effect`.
+std::vector<FoundParameter> mass_and_centre(const Effect& effect, const InertialParameters& nominal,
                                             const InertialParameters& change,
                                             const InertialCovariance& covariance);
 

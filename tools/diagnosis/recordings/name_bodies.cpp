@@ -132,10 +132,11 @@ class BodyNamer {
     void add_load(const RecordingLoad& load) {
         const Index last = signals_.regressor.cols() / 10 - 1;
         Finding finding;
-        finding.effect = effects::payload().name;
+        const Effect payload = effects::payload();
+        finding.effect = payload.name;
         finding.where = "tool";
-        finding.parameters = mass_and_centre({"mass", "com_x", "com_y", "com_z"}, InertialParameters::Zero(),
-                                             load.parameters, load.covariance);
+        finding.parameters =
+            mass_and_centre(payload, InertialParameters::Zero(), load.parameters, load.covariance);
         finding.margin_to_nothing = load.margin;
         finding.confidence = load_confidence(load.margin);
         VectorXd there = VectorXd::Ones(signals_.rows());
