@@ -116,16 +116,15 @@ void print_recordings(const Arm& arm, bool chosen_here) {
 }
 
 /// Diagnoses the robot on the training rows. Adds pages to `files`, and the extended model to `candidates`.
-void diagnose_robot(const Arm& arm, const SplitRecordings& split, const StartOptions& options,
+void diagnose_robot(const Arm& arm, std::vector<Recording> training, const StartOptions& options,
                     FolderContent& files, std::vector<Candidate>& candidates) {
     say("diagnosis of " + arm.robot->name + " on the training rows");
     DiagnosisOptions how;
     how.outputs = arm.outputs;
     how.measure = false;
     how.check_setup = !options.setup.unchecked;
-    std::vector<Recording> training = split.training;
     DiagnosisWork work = diagnose_recordings(*arm.robot, training, how, false);
-    work.diagnosis.scope = "the first " + std::to_string(total_rows(split.training)) + " of " +
+    work.diagnosis.scope = "the first " + std::to_string(total_rows(training)) + " of " +
                            std::to_string(total_rows(arm.recordings)) + " rows";
     const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
     files["diagnosis.json"] = diagnosis_json(work.diagnosis).dump(2) + '\n';
@@ -278,13 +277,13 @@ int run(StartOptions options) {
     }
     require_windows(arm.recordings);
     std::cout << "the set-up shows no mistake\n";
-    const SplitRecordings split = split_recordings(arm.recordings, training_share);
+    SplitRecordings split = split_recordings(arm.recordings, training_share);
     FolderContent files;
     std::vector<Candidate> candidates;
     candidates.push_back(
         train_network(arm, split, options)); // first: it finds out at once whether the budget is too small
     if (arm.robot) {
-        diagnose_robot(arm, split, options, files, candidates);
+        diagnose_robot(arm, std::move(split.training), options, files, candidates);
     }
     const Candidate& chosen = choose(candidates, split, options.sizes.budget());
     TrainedModel model = chosen.model;

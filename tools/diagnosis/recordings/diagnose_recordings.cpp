@@ -23,7 +23,8 @@ DiagnosisWork diagnose_recordings(const Robot& robot, std::vector<Recording>& re
                          std::to_string(several.pooled.size()));
     }
     options.torque_gains = several.torque_gains;
-    if (!several.answer.loads.empty() && !refuses_setup(robot, joined_recording(recordings), options)) {
+    if (loads_differ && !several.answer.loads.empty() &&
+        !refuses_setup(robot, joined_recording(recordings), options)) {
         take_loads_off(recordings, robot, several, options.outputs);
     }
     DiagnosisWork work = diagnose(robot, joined_recording(recordings), options);
