@@ -31,6 +31,8 @@ fi
 grep -q 'controller: expected a new or empty folder, found files in it' refused.txt
 
 if [[ $core == host ]]; then
+    "$dfdyn" start --log run.csv "${more[@]:2}" --quick --flash 48K --ram 12K -o single >/dev/null # one recording
+    test -s single/diagnosis.html
     test -s controller/diagnosis.html
     grep -q '"again.csv"' controller/diagnosis.json # both recordings are one question
     if grep -q 'As an online learner sees it' controller/diagnosis.html; then

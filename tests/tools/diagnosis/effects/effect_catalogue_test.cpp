@@ -76,12 +76,14 @@ TEST_CASE("the table of effects in the documentation equals the catalogue") {
 }
 
 TEST_CASE("every effect column of the firmware is in the catalogue of effects") {
+    int checked = 0;
     std::istringstream names(effect_names());
-    for (std::string name; names >> name;) {
+    for (std::string name; names >> name; ++checked) {
         name.erase(name.find_last_not_of(',') + 1);
         CAPTURE(name);
         CHECK(find_effect(name) != nullptr);
     }
+    CHECK(checked >= 8);
 }
 
 TEST_CASE("candidates have the places and parameters that the catalogue lists for their effect") {
