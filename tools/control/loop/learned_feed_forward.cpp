@@ -88,7 +88,7 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
     }
     follower_ = make_estimator(model, from_prior);
     if (structure_of(model).coupled()) {
-        physics_.emplace().estimator = make_estimator(physics_of(model), true);
+        physics_ = Learner{.estimator = make_estimator(physics_of(model), true)};
     }
     const auto prepare = [&](Learner& one) {
         one.share = share_of(one.estimator->cost(), ticks);

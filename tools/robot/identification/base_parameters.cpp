@@ -67,7 +67,7 @@ BaseParameters find_base_parameters(const Eigen::MatrixXd& regressor) {
         r.topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solve(r.topRows(rank));
     std::vector<Eigen::Index> taken(static_cast<std::size_t>(rank));
     std::iota(taken.begin(), taken.end(), 0);
-    std::ranges::sort(taken, {}, [&order](Eigen::Index i) { return order[i]; });
+    std::ranges::sort(taken, {}, [&place = order](Eigen::Index i) { return place[i]; });
     base.gap = gap;
     base.combination = Eigen::MatrixXd::Zero(rank, regressor.cols());
     for (Eigen::Index row = 0; row < rank; ++row) {

@@ -24,7 +24,7 @@ constexpr std::int64_t storage_bytes(std::int64_t count) noexcept {
 template <class T, int count>
 struct Storage {
     static_assert(count > 0);
-    alignas(storage_alignment) T values[count]; ///< the numbers
+    alignas(T) alignas(storage_alignment) T values[count]; ///< the numbers
 
     /// Returns `count` zeros.
     static constexpr Storage zeros(Extent<count> /*size*/) noexcept { return Storage{}; }
