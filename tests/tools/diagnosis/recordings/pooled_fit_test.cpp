@@ -132,9 +132,10 @@ TEST_CASE("the evidence is the marginal normal density") {
     std::vector<MatrixXd> columns;
     std::vector<VectorXd> measured;
     for (int r = 0; r < 2; ++r) {
-        columns.push_back(MatrixXd::NullaryExpr(6, parameters, [&] { return normal(engine); }));
-        measured.push_back(VectorXd::NullaryExpr(6, [&] { return normal(engine); }));
-        all.push_back({columns[r].transpose() * columns[r], columns[r].transpose() * measured[r]});
+        const MatrixXd& x =
+            columns.emplace_back(MatrixXd::NullaryExpr(6, parameters, [&] { return normal(engine); }));
+        const VectorXd& y = measured.emplace_back(VectorXd::NullaryExpr(6, [&] { return normal(engine); }));
+        all.push_back({x.transpose() * x, x.transpose() * y});
     }
     const auto density = [&](const PooledFit& fit) {
         MatrixXd covariance = MatrixXd::Identity(12, 12);
