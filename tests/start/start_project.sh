@@ -14,12 +14,13 @@ cd "$scratch" # the project must not need the repository
 # thinned FIRST LAST: every tenth of these rows, 500 Hz.
 thinned() { awk -v first="$1" -v last="$2" 'NR == 1 || (NR % 10 == 2 && NR >= first && NR < last)' "$data/tx40_figaroh/tx40_5kHz.csv"; }
 thinned 2 15002 >run.csv
-more=()
+again=() robot=()
 if [[ $core == host ]]; then
     thinned 15002 37502 >again.csv
-    more=(--log again.csv --robot "$data/robots/tx40/tx40.urdf" --tip tool0)
+    again=(--log again.csv)
+    robot=(--robot "$data/robots/tx40/tx40.urdf" --tip tool0)
 fi
-"$dfdyn" start --log run.csv "${more[@]}" --quick --flash 48K --ram 12K --target "${core/host/cortex-m7}" -o controller >start.txt
+"$dfdyn" start --log run.csv "${again[@]}" "${robot[@]}" --quick --flash 48K --ram 12K --target "${core/host/cortex-m7}" -o controller >start.txt
 grep -q '^chosen: ' start.txt
 test -s controller/report.html
 test -s controller/model.json
@@ -31,7 +32,7 @@ fi
 grep -q 'controller: expected a new or empty folder, found files in it' refused.txt
 
 if [[ $core == host ]]; then
-    "$dfdyn" start --log run.csv "${more[@]:2}" --quick --flash 48K --ram 12K -o single >/dev/null # one recording
+    "$dfdyn" start --log run.csv "${robot[@]}" --quick --flash 48K --ram 12K -o single >/dev/null
     test -s single/diagnosis.html
     test -s controller/diagnosis.html
     grep -q '"again.csv"' controller/diagnosis.json # both recordings are one question
