@@ -231,7 +231,8 @@ TEST_CASE("a combination lacking a member's prediction predicts zero with infini
     DFDYN_SEEDED_ENGINE(engine);
     const auto combined = make_estimator(two_models(engine), false);
     predictions(*combined, 0, 50);
-    MeasuredSample sample = MotionTick(50).sample();
+    const MotionTick motion(50);
+    MeasuredSample sample = motion.sample();
     const std::array wrong{std::nan(""), 0.0};
     sample.position = wrong;
     const Tick result = combined->tick(sample);
