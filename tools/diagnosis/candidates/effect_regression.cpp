@@ -98,6 +98,9 @@ Eigen::VectorXd EffectRegression::spent(Eigen::Index output, const std::vector<E
             acting.push_back(i);
         }
     }
+    if (acting.empty()) {
+        return Eigen::VectorXd::Zero(rows_.bins()); // Eigen's product would take blocks of a null pointer
+    }
     Eigen::MatrixXd matrix(rows_.bins() * fitted_frames_, std::ssize(acting));
     for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
         const Eigen::Index column = fitted[static_cast<std::size_t>(acting[static_cast<std::size_t>(i)])];
