@@ -198,6 +198,13 @@ TEMPLATE_TEST_CASE("one argument gives the same values as among others, and NaN 
     CHECK((std::isnan(c) && std::isnan(s)));
 }
 
+TEMPLATE_TEST_CASE("the cost counts vectors of four arguments on every machine", "", float, double) {
+    const std::int64_t vector = dfdyn::cos_sin_cost<TestType>(4);
+    CHECK(dfdyn::cos_sin_cost<TestType>(1) == vector);
+    CHECK(dfdyn::cos_sin_cost<TestType>(5) == 2 * vector);
+    CHECK(dfdyn::cos_sin_cost<TestType>(16) == 4 * vector);
+}
+
 TEMPLATE_TEST_CASE("the cosines may overwrite the arguments", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     auto arguments = random_arguments<TestType>(engine, 100, 83);

@@ -192,6 +192,10 @@ namespace dfdyn::detail {
 template <class Real>
 struct HalfPi<tests::Counted<Real>> : HalfPi<Real> {};
 
+/// As `cos_sin_cost` counts on every machine.
+template <class Real>
+inline constexpr int cos_sin_lane_count<tests::Counted<Real>> = narrowest_lane_count;
+
 template <class Real, int lanes>
 requires(lanes > 1) struct Vector<tests::Counted<Real>, lanes> {
     using Scalar = tests::Counted<Real>;

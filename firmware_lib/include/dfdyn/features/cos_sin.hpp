@@ -65,8 +65,10 @@ struct Taylor {
     }
 };
 
+inline constexpr int narrowest_lane_count = 4; ///< of `cos_sin`
+
 template <class Scalar>
-inline constexpr int cos_sin_lane_count = std::max(4, wide<Scalar>);
+inline constexpr int cos_sin_lane_count = std::max(narrowest_lane_count, wide<Scalar>);
 
 /// Computes `lanes` cosines and sines at once. Sets each lane of `outside` whose argument is NaN or too
 /// large.
@@ -170,11 +172,13 @@ template <class Scalar>
 inline constexpr std::int64_t cos_sin_bytes = std::int64_t{22} * detail::cos_sin_lane_count<Scalar> *
                                               sizeof(Scalar);
 
-/// Multiply-adds of `cos_sin`. Per argument, padded to whole vectors of the machine: one for the quadrant,
-/// one for each part of π/2, the two polynomials with their square, and the amplitude.
+/// Multiply-adds of `cos_sin`. Per argument, padded to whole vectors of the narrowest kind: one for the
+/// quadrant, one for each part of π/2, the two polynomials with their square, and the amplitude. Wider
+/// vectors are not counted, so that the cost is the same on every machine: they pad further, with fewer
+/// instructions.
 template <class Scalar>
 constexpr std::int64_t cos_sin_cost(int count) noexcept {
-    constexpr int lanes = detail::cos_sin_lane_count<Scalar>;
+    constexpr int lanes = detail::narrowest_lane_count;
     constexpr auto parts = static_cast<int>(std::size(detail::HalfPi<Scalar>::parts));
     const std::int64_t vectors = (count + lanes - 1) / lanes;
     return vectors * lanes * (1 + parts + 2 * detail::taylor_terms<Scalar> + 3);
