@@ -207,6 +207,10 @@ TEST_CASE("during a flood a tick reads a bounded number of frames and the loop r
 }
 
 TEST_CASE("a loop learns the payload of its arm over the bus", "[virtual_time]") {
+    if (!dfdyn::tests::keeps_time()) {
+        WARN("tracking errors mean nothing in a kernel that is often late: tested in virtual time only");
+        return;
+    }
     const TemporaryDirectory directory;
     const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
     const std::string scenario =
@@ -236,6 +240,10 @@ TEST_CASE("a loop learns the payload of its arm over the bus", "[virtual_time]")
 }
 
 TEST_CASE("loops learn payloads over buses of Damiao motors and of moteus controllers", "[virtual_time]") {
+    if (!dfdyn::tests::keeps_time()) {
+        WARN("tracking errors mean nothing in a kernel that is often late: tested in virtual time only");
+        return;
+    }
     const TemporaryDirectory directory;
     const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
     const std::string scenario =

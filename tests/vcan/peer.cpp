@@ -28,6 +28,10 @@ bool has_ended(pid_t pid) {
 
 bool virtual_time() { return std::getenv("DFDYN_VIRTUAL_TIME") != nullptr; }
 
+bool own_machine() { return std::getenv("DFDYN_VCAN_OWN_MACHINE") != nullptr; }
+
+bool keeps_time() { return virtual_time() || !own_machine(); }
+
 long receivers() {
     std::ifstream lists("/proc/net/can/rcvlist_all");
     const std::string text{std::istreambuf_iterator<char>(lists), {}};

@@ -26,6 +26,13 @@ double number_after(const std::string& text, const std::string& words, const std
 /// Whether the clock stops while programs run. Then nothing is ever late, and every run is the same.
 bool virtual_time();
 
+/// Returns whether the clock that is tested belongs to a kernel that was booted for the tests.
+bool own_machine();
+
+/// Returns whether loops can meet their deadlines: not in a kernel that was booted for the tests and shares
+/// its core with the host, unless its time is virtual.
+bool keeps_time();
+
 /// Calls `done` until it returns true, for at most 5 s. Returns whether it did.
 template <class Condition>
 bool wait_for(Condition done) {
