@@ -65,8 +65,9 @@ std::optional<LikelihoodValue> MarginalLikelihood::evaluate(const VectorXd& thet
 Bounds MarginalLikelihood::bounds() const {
     const Bounds input = input_.bounds();
     const Bounds own = outputs_.bounds();
-    return {joined(std::log(1e-6), std::log(1e-2), stacked(input.lower, own.lower)),
-            joined(std::log(1e2), std::log(1e3), stacked(input.upper, own.upper))};
+    return {
+        joined(std::log(noise_ratio_least), std::log(length_scale_least), stacked(input.lower, own.lower)),
+        joined(std::log(noise_ratio_most), std::log(length_scale_most), stacked(input.upper, own.upper))};
 }
 
 VectorXd MarginalLikelihood::start(int index, NormalSource& random) const {

@@ -23,6 +23,13 @@ struct Hyperparameters {
 /// Number of the kernel's parameters: the logarithms of r and l, which come first.
 constexpr Eigen::Index kernel_parameters = 2;
 
+/// Bounds of r; float learners lose accuracy below the least.
+constexpr double noise_ratio_least = 1e-6;
+constexpr double noise_ratio_most = 1e2;
+/// Bounds of l, for inputs with unit standard deviation.
+constexpr double length_scale_least = 1e-2;
+constexpr double length_scale_most = 1e3;
+
 Eigen::VectorXd joined(double log_noise_ratio, double log_length_scale, const Eigen::VectorXd& rest);
 
 /// -2 log marginal likelihood of the training samples with the exact Gaussian kernel (paper, Section IV-C),
@@ -37,8 +44,6 @@ class MarginalLikelihood final : public Likelihood {
 
     Hyperparameters split(const Eigen::VectorXd& theta) const;
 
-    /// Returns the bounds: r in [1e-6, 100], because float32 learners lose accuracy below; l in [0.01, 1000]
-    /// for inputs with unit standard deviation.
     Bounds bounds() const;
 
     /// Returns the initial point of start number `index`.
