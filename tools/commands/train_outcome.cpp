@@ -9,7 +9,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cmath>
 #include <iostream>
 #include <map>
 #include <string>
@@ -59,42 +58,13 @@ void print_hold_out(const std::vector<HoldOutPoint>& points) {
 void print_kernel(const TrainedModel& model) {
     std::cout << "features: input " << input_description(model.input.kind).name << ", length scale "
               << model.features.length_scale << ", rho^2/sigma^2 " << model.outputs.prior_variance << '\n';
-    for (const std::string& sentence : bounds_reached(model)) {
+    for (const std::string& sentence :
+         bounds_reached(1 / model.outputs.prior_variance, model.features.length_scale)) {
         std::cout << "  " << sentence << '\n';
     }
 }
 
 } // namespace
-
-std::vector<std::string> bounds_reached(const TrainedModel& model) {
-    if (!structure_of(model).features) {
-        return {};
-    }
-    struct Bound {
-        double value, bound;
-        const char* meaning;
-    };
-    const double length_scale = model.features.length_scale;
-    const double noise_ratio = 1 / model.outputs.prior_variance;
-    constexpr double close = 0.01; // relative
-    std::vector<std::string> sentences;
-    for (const Bound& one :
-         {Bound{length_scale, length_scale_least,
-                "the length scale is at its lower bound: the features do not generalise to new motions"},
-          Bound{length_scale, length_scale_most,
-                "the length scale is at its upper bound: the features are nearly linear functions"},
-          Bound{
-              noise_ratio, noise_ratio_least,
-              "rho^2/sigma^2 is at its upper bound: the outputs have hardly any noise, or the model fits it"},
-          Bound{
-              noise_ratio, noise_ratio_most,
-              "rho^2/sigma^2 is at its lower bound: the features explain hardly anything of the outputs"}}) {
-        if (std::abs(one.value / one.bound - 1) < close) {
-            sentences.emplace_back(one.meaning);
-        }
-    }
-    return sentences;
-}
 
 void print_outcome(const ModelTrainingResult& result, const std::string& trained_on) {
     const TrainedModel& model = result.model;

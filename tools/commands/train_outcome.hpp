@@ -7,16 +7,11 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
-#include <vector>
 
 namespace dfdyn::tools {
 
 /// Prints the result of `dfdyn train` on stdout, for a model trained on the recordings named `trained_on`.
 void print_outcome(const ModelTrainingResult& result, const std::string& trained_on);
-
-/// Returns a sentence with the meaning for each bound of the search that the kernel of `model` reached; none
-/// for models without features.
-std::vector<std::string> bounds_reached(const TrainedModel& model);
 
 /// Returns the figures of a training with those of `footprint` on `target`, schema `dfdyn.training/1`.
 nlohmann::ordered_json outcome_json(const ModelTrainingResult& result, const Target& target);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -307,6 +308,25 @@ TEST_CASE("the predictions of a frozen replay do not depend on measured outputs"
     const std::string frozen = predictions("run.csv", "--frozen");
     CHECK(predictions("reversed.csv", "--frozen") == frozen);
     CHECK(predictions("run.csv", "") != frozen);
+}
+
+TEST_CASE("training on outputs that are only noise says that the features explain hardly anything") {
+    const TemporaryDirectory directory;
+    std::mt19937 engine(3);
+    std::normal_distribution<double> noise;
+    std::ostringstream csv("t,q1,q2,tau1,tau2\n", std::ios::ate);
+    for (int row = 0; row < 1500; ++row) {
+        const double time_s = 0.01 * row;
+        csv << time_s << ',' << std::sin(time_s) << ',' << std::cos(1.7 * time_s) << ',' << noise(engine)
+            << ',' << noise(engine) << '\n';
+    }
+    directory.write("noise.csv", csv.str());
+    const auto outcome = run_program(
+        directory, "train --outputs tau --features 10 --starts 1 --likelihood-rows 200 --quiet --log " +
+                       (directory.path() / "noise.csv").string() + " -o " +
+                       (directory.path() / "model.json").string());
+    CHECK(outcome.status == 0);
+    CHECK_THAT(outcome.out, ContainsSubstring("the features explain hardly anything"));
 }
 
 } // namespace model_commands_test

@@ -79,4 +79,29 @@ VectorXd MarginalLikelihood::start(int index, NormalSource& random) const {
                   stacked(input, outputs_.start(input)));
 }
 
+std::vector<std::string> bounds_reached(double noise_ratio, double length_scale) {
+    struct Bound {
+        double value, bound;
+        const char* meaning;
+    };
+    constexpr double close = 0.01; // relative
+    std::vector<std::string> sentences;
+    for (const Bound& one :
+         {Bound{length_scale, length_scale_least,
+                "the length scale is at its lower bound: the features do not generalise to new motions"},
+          Bound{length_scale, length_scale_most,
+                "the length scale is at its upper bound: the features are nearly linear functions"},
+          Bound{
+              noise_ratio, noise_ratio_least,
+              "rho^2/sigma^2 is at its upper bound: the outputs have hardly any noise, or the model fits it"},
+          Bound{
+              noise_ratio, noise_ratio_most,
+              "rho^2/sigma^2 is at its lower bound: the features explain hardly anything of the outputs"}}) {
+        if (std::abs(one.value / one.bound - 1) < close) {
+            sentences.emplace_back(one.meaning);
+        }
+    }
+    return sentences;
+}
+
 } // namespace dfdyn::tools

@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -29,6 +31,9 @@ constexpr double noise_ratio_most = 1e2;
 /// Bounds of l, for inputs with unit standard deviation.
 constexpr double length_scale_least = 1e-2;
 constexpr double length_scale_most = 1e3;
+
+/// Returns a sentence with the meaning for each bound that r or l reached.
+std::vector<std::string> bounds_reached(double noise_ratio, double length_scale);
 
 Eigen::VectorXd joined(double log_noise_ratio, double log_length_scale, const Eigen::VectorXd& rest);
 

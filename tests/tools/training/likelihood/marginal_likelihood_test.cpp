@@ -122,4 +122,16 @@ TEST_CASE("the marginal likelihood has no value if it cannot be computed") {
     }
 }
 
+TEST_CASE("each bound that the kernel's parameters reached is named, and no other") {
+    using Catch::Matchers::StartsWith;
+    using dfdyn::tools::bounds_reached;
+    CHECK(bounds_reached(0.002, 3).empty());
+    CHECK(bounds_reached(0.002, 980).empty());
+    CHECK_THAT(bounds_reached(0.002, 0.01).at(0), StartsWith("the length scale is at its lower bound"));
+    CHECK_THAT(bounds_reached(0.002, 999.9).at(0), StartsWith("the length scale is at its upper bound"));
+    CHECK_THAT(bounds_reached(1e-6, 3).at(0), StartsWith("rho^2/sigma^2 is at its upper bound"));
+    CHECK_THAT(bounds_reached(100, 3).at(0), StartsWith("rho^2/sigma^2 is at its lower bound"));
+    CHECK(bounds_reached(100, 1000).size() == 2);
+}
+
 } // namespace marginal_likelihood_test
