@@ -70,6 +70,15 @@ bool was_in_time(const std::string& said) {
            number_after(said, "at most ", "pace: ") < 3000; // µs late; a period is 10 ms
 }
 
+/// Says so if this kernel is too late for tracking errors.
+bool tracking_is_meaningful() {
+    if (!dfdyn::tests::keeps_time()) {
+        WARN(
+            "not run: this kernel is often late; virtual time and a machine's own vcan test tracking errors");
+    }
+    return dfdyn::tests::keeps_time();
+}
+
 } // namespace
 
 TEST_CASE("a loop moves the arm of another program for the requested duration", "[virtual_time]") {
@@ -207,8 +216,7 @@ TEST_CASE("during a flood a tick reads a bounded number of frames and the loop r
 }
 
 TEST_CASE("a loop learns the payload of its arm over the bus", "[virtual_time]") {
-    if (!dfdyn::tests::keeps_time()) {
-        WARN("tracking errors mean nothing in a kernel that is often late: tested in virtual time only");
+    if (!tracking_is_meaningful()) {
         return;
     }
     const TemporaryDirectory directory;
@@ -240,8 +248,7 @@ TEST_CASE("a loop learns the payload of its arm over the bus", "[virtual_time]")
 }
 
 TEST_CASE("loops learn payloads over buses of Damiao motors and of moteus controllers", "[virtual_time]") {
-    if (!dfdyn::tests::keeps_time()) {
-        WARN("tracking errors mean nothing in a kernel that is often late: tested in virtual time only");
+    if (!tracking_is_meaningful()) {
         return;
     }
     const TemporaryDirectory directory;
