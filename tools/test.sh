@@ -34,8 +34,8 @@ run_tests() {
 
 build_release() { build release; }
 test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|truth|headers|panel)$'; }
-# The kernel with a virtual CAN uses one core only.
-test_promises() { run_tests release --label-regex '^(acceptance|vcan)$'; }
+# --verbose: what a stalled machine could not judge is in the log.
+test_promises() { run_tests release --label-regex '^(acceptance|vcan)$' --verbose; }
 test_elsewhere() { run_tests release --label-regex '^(consumer|packaging|cortex_m|realtime)$' --verbose; }
 # Every plan of the experiment, with one draw and few rows.
 test_experiment() { tools/reproduce.sh --quick; }
@@ -97,7 +97,7 @@ esac
 
 # The lines of a log that belong on the terminal.
 highlights() {
-    grep -hE '^[0-9]+% tests passed|cortex-m[0-9a-z-]+: (dfdyn_c|instr|bench)|the target, |realtime: |not installed:' "$1" | sed -E 's/^([0-9]+: )+//; s/^/        /' || return 0
+    grep -hE '^[0-9]+% tests passed|cortex-m[0-9a-z-]+: (dfdyn_c|instr|bench)|the target, |realtime: |not installed:|not judged:' "$1" | sed -E 's/^([0-9]+: *)+//; s/^/        /' || return 0
 }
 
 # run_step NUMBER FUNCTION TITLE
@@ -115,6 +115,7 @@ run_step() {
     if [[ $status -ne 0 ]]; then
         echo "failed after $((SECONDS - start)) s"
         tail -n 40 "$log"
+        grep -E -A 5 ' FAILED:$|: error:' "$log" | head -n 30 || true
         echo "FAILED after $SECONDS s: step $1 of ${#steps[@]}, $3; the log is $log"
         exit 1
     fi

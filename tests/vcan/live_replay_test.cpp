@@ -8,9 +8,7 @@
 #include "tools/replay/replay_interface.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
-#include <thread>
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -32,6 +30,11 @@ using dfdyn::tests::IcubLog;
     ::_exit(1);
 }
 
+/// Number of complete lines of a file, which need not exist.
+long lines(const std::filesystem::path& path) {
+    return std::filesystem::exists(path) ? std::ranges::count(file_content(path), '\n') : 0;
+}
+
 } // namespace
 
 TEST_CASE("the output of a killed live replay is complete except for its last line") {
@@ -46,16 +49,16 @@ TEST_CASE("the output of a killed live replay is complete except for its last li
     }
     CHECK(dfdyn::tests::wait_for_receivers(receivers));
     dfdyn::tests::run(std::string(DFDYN_PROGRAM) + " play --log " + log.path.string() + " --can vcan0");
-    std::this_thread::sleep_for(std::chrono::milliseconds(600)); // it flushes four times a second
+    // It flushes both files four times a second.
+    constexpr long frames = 4 * 100 + 6;
+    CHECK(dfdyn::tests::wait_for([&] { return lines(csv) > 90 && lines(record) >= frames; }));
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
 
-    const std::string rows = file_content(csv);
-    CHECK_THAT(rows, Catch::Matchers::StartsWith("t,fx,fx_pred,fx_std,"));
-    CHECK(std::ranges::count(rows, '\n') > 90);
+    CHECK_THAT(file_content(csv), Catch::Matchers::StartsWith("t,fx,fx_pred,fx_std,"));
     const auto estimator = make_estimator(log.model, true);
     const ReplayedBus again = replay_log(*estimator, {&log.model, 1}, log.bus, record, "", 0);
-    CHECK(again.bus.frames == 4 * 100 + 6);
+    CHECK(again.bus.frames == frames);
 }
 
 TEST_CASE("a live replay on a silent bus sleeps") {
