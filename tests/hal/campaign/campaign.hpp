@@ -31,7 +31,9 @@ struct CampaignRow {
 /// Applies random mixtures of faults to the bus of one arm, and compares every accepted value with the truth.
 class Campaign {
   public:
-    Campaign(const CampaignArm& arm, Trigger trigger, std::mt19937_64& engine) : arm_(arm), engine_(engine) {
+    /// `encoder`: how the receiver is told that the joints' encoders restart.
+    Campaign(const CampaignArm& arm, Trigger trigger, hal::Encoder encoder, std::mt19937_64& engine)
+        : arm_(arm), encoder_(encoder), engine_(engine) {
         row_.family = arm.name;
         row_.trigger = trigger;
         row_.wrong_by_fault.resize(100);
@@ -98,6 +100,7 @@ class Campaign {
     void run_once(std::span<const Fault> faults) {
         Scene scene{Truth(engine_), 100 * second, &engine_};
         limits_ = std::bernoulli_distribution(0.5)(engine_) ? own_limits : hal::MotionLimits{};
+        limits_.encoder = encoder_;
         Traffic traffic = arm_.run(scene, cycles);
         placed_ = place(scene, faults);
         described_ = nullptr;
@@ -304,6 +307,7 @@ class Campaign {
     }
 
     const CampaignArm& arm_;
+    hal::Encoder encoder_;
     std::mt19937_64& engine_;
     hal::MotionLimits limits_;
     CampaignRow row_;

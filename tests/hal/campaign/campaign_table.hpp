@@ -34,9 +34,9 @@ inline void print(const CampaignRow& row, const char* trigger) {
 }
 
 /// Runs one family and trigger, and adds its row to the sum.
-inline void fight(const CampaignArm& arm, Trigger trigger, std::uint64_t frames, std::mt19937_64& engine,
-                  CampaignRow& sum) {
-    const CampaignRow row = Campaign(arm, trigger, engine).run(frames, campaign_faults());
+inline void fight(const CampaignArm& arm, Trigger trigger, hal::Encoder encoder, std::uint64_t frames,
+                  std::mt19937_64& engine, CampaignRow& sum) {
+    const CampaignRow row = Campaign(arm, trigger, encoder, engine).run(frames, campaign_faults(encoder));
     print(row, name_of(trigger));
     sum.wrong.insert(sum.wrong.end(), row.wrong.begin(), row.wrong.end());
     sum.frames += row.frames;

@@ -3,6 +3,8 @@
 
 #include "tests/hal/campaign/fault_actions.hpp"
 
+#include <iterator>
+
 namespace dfdyn::tests {
 
 namespace {
@@ -106,6 +108,12 @@ bool FaultSite::wait_for_motion(std::size_t joint, double least_rad_s) {
     return false;
 }
 
-std::span<const Fault> campaign_faults() { return faults; }
+std::vector<Fault> campaign_faults(hal::Encoder encoder) {
+    std::vector<Fault> of_encoder;
+    std::ranges::copy_if(faults, std::back_inserter(of_encoder), [encoder](const Fault& fault) {
+        return encoder != hal::Encoder::absolute || fault.apply != restart_incremental;
+    });
+    return of_encoder;
+}
 
 } // namespace dfdyn::tests

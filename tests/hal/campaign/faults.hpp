@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <span>
+#include <vector>
 
 namespace dfdyn::tests {
 
@@ -103,7 +104,8 @@ struct Fault {
     double waits_s = 0;
 };
 
-/// Returns the faults of the legend that affect a bus.
-std::span<const Fault> campaign_faults();
+/// Returns the faults of the legend that affect a bus. An absolute encoder has no restart of an incremental
+/// one.
+std::vector<Fault> campaign_faults(hal::Encoder encoder = hal::Encoder::unknown);
 
 } // namespace dfdyn::tests

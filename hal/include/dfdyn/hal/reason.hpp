@@ -104,7 +104,7 @@ enum class Reason : std::uint8_t {
     /// After a jump or a restart the joint's positions continue from a different value: the encoder has lost
     /// its zero, or another device sends. Ends when they return to values that the joint can have. After a
     /// restart at the encoder's zero it ends with a new start only. Remedy: check the joint's position; set
-    /// its zero; start again.
+    /// its zero; start again; joints.encoder, if the encoder is absolute.
     position_lost = 65,
     /// A moving joint repeats its last position bit for bit and cannot have stopped. Ends when the position
     /// changes.

@@ -8,6 +8,13 @@
 
 namespace dfdyn::hal {
 
+/// What an encoder shows after it was switched on, or restarted.
+enum class Encoder : std::uint8_t {
+    unknown,     ///< one of the others
+    absolute,    ///< the joint's position
+    incremental, ///< its own zero, wherever the joint is
+};
+
 /// One reading of a joint's encoder.
 struct EncoderReading {
     std::int64_t stamp_ns = 0;

@@ -46,12 +46,10 @@ class MotionEvidence {
     /// Returns true while readings are rejected that do not connect with the trusted ones.
     [[nodiscard]] constexpr bool lost() const noexcept { return !refused_.empty(); }
 
-    /// Fraction of the motion limits allowed for a jump to a run; smaller if the run begins at the encoder's
-    /// zero.
+    /// Fraction of the motion limits allowed for a jump to a run; smaller at the encoder's zero.
     struct ShareAtZero {
         const MotionEvidence& evidence; ///< of the joint
         const EncoderReading& first;    ///< first reading of the run
-
         /// Returns the fraction.
         [[nodiscard]] constexpr double operator()(const MotionLine& begin) const noexcept {
             return evidence.begins_at_zero(first, begin) ? 0.25 : 1.0;
@@ -166,19 +164,18 @@ class MotionEvidence {
                magnitude(reading.position_rad - trusted_.last().position_rad) <= 2 * reading.step_rad;
     }
 
-    /// Returns the number of readings after which the run is trusted.
-    [[nodiscard]] constexpr int needed_readings() const noexcept {
-        const int least = config_.qualification.readings;
+    /// Returns true if the run must be long to be trusted.
+    [[nodiscard]] constexpr bool is_doubtful() const noexcept {
         if (trusted_.empty()) {
-            return least;
+            return false;
         }
         const std::int64_t silence_ns = run().first().stamp_ns - trusted_.last().stamp_ns;
         const bool disturbed =
             (!time_known_ && !(reaches_hidden(run().first()) &&
                                comparison_.reaches_after_silence(trusted_, run().first()))) ||
             (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
-        const bool doubtful = time_known_ && !connects(trusted_, run());
-        return lost() || disturbed || doubtful || candidate_.contradicted() ? most_readings() : least;
+        const bool apart = time_known_ && !connects(trusted_, run());
+        return lost() || disturbed || apart || candidate_.contradicted();
     }
 
     /// Returns the number of readings required after a contradiction.
@@ -301,6 +298,11 @@ class MotionEvidence {
     [[nodiscard]] constexpr bool begins_at_zero(const MotionRun& run) const noexcept {
         return begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) ||
                begins_at_zero(run.first(), run.begin_line(1, config_.period_ns));
+    }
+
+    /// Returns true if an incremental encoder that restarted unseen can have counted to the run.
+    [[nodiscard]] constexpr bool may_count_from_zero(const MotionRun& run) const noexcept {
+        return !stood_at(run.first()) && zero_.may_explain(trusted_, run, time_known_ ? 0 : clock_s);
     }
 
     /// Returns the shortest silence of a board that restarts (s).

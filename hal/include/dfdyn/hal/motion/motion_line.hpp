@@ -13,9 +13,10 @@ namespace dfdyn::hal {
 /// Motion limits of a joint. The defaults exceed those of any arm; a joint's own limits detect smaller
 /// faults.
 struct MotionLimits {
-    double velocity = 10;      ///< rad/s
-    double acceleration = 100; ///< rad/s²
-    double stop = 20;          ///< rad/s²; deceleration from a motion to constant readings
+    double velocity = 10;               ///< rad/s
+    double acceleration = 100;          ///< rad/s²
+    double stop = 20;                   ///< rad/s²; deceleration from a motion to constant readings
+    Encoder encoder = Encoder::unknown; ///< what it shows after a restart
 };
 
 /// Straight line through a few readings: position and velocity of a joint.

@@ -38,6 +38,9 @@ class ZeroWatch {
     /// before the run without known readings.
     [[nodiscard]] constexpr bool explains(const EncoderReading& first, const MotionLine& begin,
                                           double trusted_velocity, double hidden_s) const noexcept {
+        if (tolerance_.limits.encoder == Encoder::absolute) {
+            return false;
+        }
         if (magnitude(first.from_zero_rad) <= travel(first, begin, trusted_velocity, hidden_s) &&
             leaves_zero(first, begin, hidden_s)) {
             return true;
@@ -51,12 +54,24 @@ class ZeroWatch {
         return goes_on(first, begin, trusted_velocity);
     }
 
+    /// Returns true if an incremental encoder that restarted unseen, between two runs or up to `clock_s`
+    /// before, can have counted to the second one.
+    [[nodiscard]] constexpr bool may_explain(const MotionRun& before, const MotionRun& run,
+                                             double clock_s) const noexcept {
+        const double silence_s = seconds_between(before.last().stamp_ns, run.first().stamp_ns);
+        const double most =
+            travel(run.first(), run.begin_line(0, tolerance_.period_ns),
+                   before.end_line(0, tolerance_.period_ns).velocity, std::max(0.0, silence_s) + clock_s);
+        return tolerance_.limits.encoder == Encoder::incremental && !before.empty() &&
+               magnitude(run.first().from_zero_rad) <= most;
+    }
+
     /// Returns true if the joint can have moved to this reading, stamped to within a period, from readings
     /// that began at the zero.
     [[nodiscard]] constexpr bool lead_to_untimed(const EncoderReading& reading) const noexcept {
         const std::int64_t since_ns = reading.stamp_ns - counted_.last().stamp_ns;
         const double apart = magnitude(reading.from_zero_rad - counted_.last().from_zero_rad); // any turn
-        return counted_.readings() > 0 && since_ns >= 0 &&
+        return tolerance_.limits.encoder != Encoder::absolute && counted_.readings() > 0 && since_ns >= 0 &&
                since_ns <= max_age_ns_ + 2 * tolerance_.period_ns &&
                apart <= tolerance_.reach_untimed(since_ns, reading.step_rad);
     }
