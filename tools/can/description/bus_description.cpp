@@ -99,6 +99,30 @@ std::vector<std::optional<double>> per_joint(const JsonReader& reader, const std
     return values;
 }
 
+hal::Encoder parse_encoder(const JsonReader& reader, const std::string& name) {
+    if (name != "absolute" && name != "incremental") {
+        throw reader.error("encoder", R"("absolute" or "incremental")", in_quotes(name));
+    }
+    return name == "absolute" ? hal::Encoder::absolute : hal::Encoder::incremental;
+}
+
+/// Reads what the joints' encoders show after a restart: one text for all joints or one per joint.
+void read_encoders(const JsonReader& reader, std::vector<hal::MotionLimits>& limits) {
+    if (!reader.has("encoder")) {
+        return;
+    }
+    const int joints = static_cast<int>(limits.size());
+    const std::vector<std::string> names = reader.is_array("encoder")
+                                               ? reader.texts("encoder", joints)
+                                               : std::vector(limits.size(), reader.text("encoder"));
+    if (names.size() != limits.size()) {
+        throw reader.error("encoder", std::to_string(joints) + " texts", std::to_string(names.size()));
+    }
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        limits[i].encoder = parse_encoder(reader, names[i]);
+    }
+}
+
 /// Motion limits from the description, otherwise from the robot file, otherwise beyond any joint's motion.
 std::vector<hal::MotionLimits> read_limits(const JsonReader& reader, const std::filesystem::path& folder,
                                            int joint_count) {
@@ -119,6 +143,7 @@ void read_joints(const JsonReader& reader, const std::filesystem::path& folder, 
     read_boards(reader, folder, description);
     description.joint_count = count_joints(reader, description.boards);
     description.joint_limits = read_limits(reader, folder, description.joint_count);
+    read_encoders(reader, description.joint_limits);
 }
 
 /// Reads the efforts that the joints' own boards measure as outputs.

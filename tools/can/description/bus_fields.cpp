@@ -21,7 +21,8 @@ void allow_only(const JsonReader& reader, Names names, const std::vector<FamilyF
 }
 
 const Names joint_fields{"family",   "boards",    "rate_hz",        "max_age_s",          "latency_s",
-                         "jitter_s", "limit_rad", "velocity_limit", "acceleration_limit", "robot"};
+                         "jitter_s", "limit_rad", "velocity_limit", "acceleration_limit", "robot",
+                         "encoder"};
 const Names sensor_fields{"family",   "rate_hz", "max_age_s",     "latency_s",
                           "jitter_s", "limit",   "pair_window_s", "frozen_after"};
 

@@ -205,7 +205,7 @@ void print_recognised_bus(std::ostream& out, const RecognisedBus& bus) {
         for (const std::string& unsure : family.recognition.unsure) {
             out << "    unsure: " << unsure << '\n';
         }
-        out << "    unsure: order, directions and zeros of the joints\n";
+        out << "    unsure: order, directions, zeros and encoders of the joints\n";
     }
     if (bus.families.empty()) {
         out << "  no family of devices\n";

@@ -78,11 +78,21 @@ TEST_CASE("a bus description gives devices and rates and limits") {
         changed("icub_arm_strain.json", "\"bit_rate\": 1000000", "\"bit_rate\": 600000");
     CHECK(slow.pairing.delay_ns == 833'333); // 2 x 135 and 2 x 115 bits
     CHECK(icub.boards.at(1).joint == std::array{2, 3});
-    const BusDescription ur5 = read_bus_description(bus_folder + "ur5_cia402.json");
+    CHECK(icub.joint_limits.at(0).encoder == dfdyn::hal::Encoder::unknown);
+    const BusDescription ur5 = changed("ur5_cia402.json", "\"cia402\"", R"("cia402", "encoder": "absolute")");
+    CHECK(ur5.joint_limits.at(5).encoder == dfdyn::hal::Encoder::absolute);
     CHECK(ur5.joint_count == 6);
     CHECK(ur5.outputs == OutputKind::motor_current);
     CHECK(ur5.synchronous);
     CHECK_FALSE(ur5.sensor);
+}
+
+TEST_CASE("each joint of a bus description can have another encoder") {
+    const BusDescription arm =
+        changed("icub_arm_strain.json", "\"icub_two_joint_board\"",
+                R"("icub_two_joint_board", "encoder": ["absolute", "absolute", "incremental", "absolute"])");
+    CHECK(arm.joint_limits.at(1).encoder == dfdyn::hal::Encoder::absolute);
+    CHECK(arm.joint_limits.at(2).encoder == dfdyn::hal::Encoder::incremental);
 }
 
 TEST_CASE("an impossible bus description is rejected with field and expected value and found value") {
@@ -111,6 +121,10 @@ TEST_CASE("an impossible bus description is rejected with field and expected val
          "fit, found others"},
         {"ur5_cia402.json", "\"0x280\"", "\"280\"",
          R"(joints.position.pdo: expected an identifier from "0x0" to "0x7FF", found "280")"},
+        {"ur5_cia402.json", "\"cia402\"", R"("cia402", "encoder": "multi_turn")",
+         R"(joints.encoder: expected "absolute" or "incremental", found "multi_turn")"},
+        {"ur5_cia402.json", "\"cia402\"", R"("cia402", "encoder": ["absolute"])",
+         "joints.encoder: expected 6 texts, found 1"},
         {"ur5_icub_2foc.json", "\"set\"", "\"sync\"",
          R"(trigger.on: expected timer or set, because no joint measures at a SYNC, found "sync")"},
         {"icub_arm_strain.json", "icub_strain", "efforts",
