@@ -62,7 +62,7 @@ TEST_CASE("a joint that returns at its encoder's zero is trusted only if the enc
 }
 
 TEST_CASE("in doubt an incremental encoder is lost where it can have counted to from its zero") {
-    const double off_rad = 0.05; // can be reached, but is wrong
+    const double off_rad = 0.05;                             // can be reached, but is wrong
     const double counted_rad = truth(silent_to) - truth(50); // since a restart at tick 50
     const double zero_rad = truth(silent_to) + off_rad - counted_rad;
     CHECK(Joint{Encoder::unknown, zero_rad}.after_doubt(off_rad) == Reason::ok);
