@@ -31,7 +31,7 @@ struct CampaignRow {
 /// Applies random mixtures of faults to the bus of one arm, and compares every accepted value with the truth.
 class Campaign {
   public:
-    /// `encoder`: how the receiver is told that the joints' encoders restart.
+    /// `encoder`: the receiver's description of both encoders.
     Campaign(const CampaignArm& arm, Trigger trigger, hal::Encoder encoder, std::mt19937_64& engine)
         : arm_(arm), encoder_(encoder), engine_(engine) {
         row_.family = arm.name;

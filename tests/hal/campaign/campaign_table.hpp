@@ -33,10 +33,17 @@ inline void print(const CampaignRow& row, const char* trigger) {
               << 100 * share(row.refused_good, row.good) << " % |\n";
 }
 
+/// What the receiver is told of the joints' encoders, and what they are.
+struct Encoders {
+    hal::Encoder described = hal::Encoder::unknown;
+    hal::Encoder real = hal::Encoder::unknown;
+};
+
 /// Runs one family and trigger, and adds its row to the sum.
-inline void fight(const CampaignArm& arm, Trigger trigger, hal::Encoder encoder, std::uint64_t frames,
+inline void fight(const CampaignArm& arm, Trigger trigger, const Encoders& encoders, std::uint64_t frames,
                   std::mt19937_64& engine, CampaignRow& sum) {
-    const CampaignRow row = Campaign(arm, trigger, encoder, engine).run(frames, campaign_faults(encoder));
+    const CampaignRow row =
+        Campaign(arm, trigger, encoders.described, engine).run(frames, campaign_faults(encoders.real));
     print(row, name_of(trigger));
     sum.wrong.insert(sum.wrong.end(), row.wrong.begin(), row.wrong.end());
     sum.frames += row.frames;

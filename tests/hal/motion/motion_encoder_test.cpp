@@ -68,6 +68,9 @@ TEST_CASE("in doubt an incremental encoder is lost where it can have counted to 
     CHECK(Joint{Encoder::unknown, zero_rad}.after_doubt(off_rad) == Reason::ok);
     CHECK(Joint{Encoder::incremental, zero_rad}.after_doubt(off_rad) == Reason::position_lost);
     CHECK(Joint{Encoder::incremental, 2}.after_doubt(0) == Reason::ok);
+    Joint without_doubt{Encoder::incremental, zero_rad};
+    without_doubt.take(0, silent_from);
+    CHECK(without_doubt.take(silent_to, silent_to + 300, off_rad) == Reason::ok);
 }
 
 TEST_CASE("an absolute encoder is lost while it shows positions that the joint cannot have") {

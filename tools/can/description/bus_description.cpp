@@ -100,10 +100,16 @@ std::vector<std::optional<double>> per_joint(const JsonReader& reader, const std
 }
 
 hal::Encoder parse_encoder(const JsonReader& reader, const std::string& name) {
-    if (name != "absolute" && name != "incremental") {
-        throw reader.error("encoder", R"("absolute" or "incremental")", in_quotes(name));
+    if (name == "absolute") {
+        return hal::Encoder::absolute;
     }
-    return name == "absolute" ? hal::Encoder::absolute : hal::Encoder::incremental;
+    if (name == "incremental") {
+        return hal::Encoder::incremental;
+    }
+    if (name != "unknown") {
+        throw reader.error("encoder", R"("absolute", "incremental" or "unknown")", in_quotes(name));
+    }
+    return hal::Encoder::unknown;
 }
 
 /// Reads what the joints' encoders show after a restart: one text for all joints or one per joint.

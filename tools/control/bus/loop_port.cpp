@@ -29,7 +29,9 @@ int delay_of(const BusDescription& description, double loop_period_s) {
 /// joints. A joint that was missing no longer than the loop extrapolates need not qualify again.
 BusDescription for_loop(BusDescription description, double loop_period_s) {
     constexpr double none = 1e12;
-    description.joint_limits.assign(description.joint_limits.size(), {none, none, none});
+    for (hal::MotionLimits& limits : description.joint_limits) {
+        limits = {none, none, none, limits.encoder};
+    }
     const int coasted = SafeStopConfig{}.position_patience + 1; // the period with the next reading
     description.joints.max_age_ns =
         std::max<std::int64_t>(description.joints.max_age_ns, std::llround(1e9 * coasted * loop_period_s));

@@ -90,8 +90,9 @@ TEST_CASE("a bus description gives devices and rates and limits") {
 TEST_CASE("each joint of a bus description can have another encoder") {
     const BusDescription arm =
         changed("icub_arm_strain.json", "\"icub_two_joint_board\"",
-                R"("icub_two_joint_board", "encoder": ["absolute", "absolute", "incremental", "absolute"])");
-    CHECK(arm.joint_limits.at(1).encoder == dfdyn::hal::Encoder::absolute);
+                R"("icub_two_joint_board", "encoder": ["absolute", "unknown", "incremental", "absolute"])");
+    CHECK(arm.joint_limits.at(0).encoder == dfdyn::hal::Encoder::absolute);
+    CHECK(arm.joint_limits.at(1).encoder == dfdyn::hal::Encoder::unknown);
     CHECK(arm.joint_limits.at(2).encoder == dfdyn::hal::Encoder::incremental);
 }
 
@@ -122,7 +123,7 @@ TEST_CASE("an impossible bus description is rejected with field and expected val
         {"ur5_cia402.json", "\"0x280\"", "\"280\"",
          R"(joints.position.pdo: expected an identifier from "0x0" to "0x7FF", found "280")"},
         {"ur5_cia402.json", "\"cia402\"", R"("cia402", "encoder": "multi_turn")",
-         R"(joints.encoder: expected "absolute" or "incremental", found "multi_turn")"},
+         R"(joints.encoder: expected "absolute", "incremental" or "unknown", found "multi_turn")"},
         {"ur5_cia402.json", "\"cia402\"", R"("cia402", "encoder": ["absolute"])",
          "joints.encoder: expected 6 texts, found 1"},
         {"ur5_icub_2foc.json", "\"set\"", "\"sync\"",

@@ -85,7 +85,7 @@ void fight_all(std::uint64_t frames) {
     for (const CampaignArm& arm : {arm_with_efforts<DbcJoints>("dbc, efforts"),
                                    arm_with_sensor<DbcJoints, DbcWrench>("dbc, dbc sensor")}) {
         for (const Trigger trigger : {Trigger::timer, Trigger::set}) {
-            fight(arm, trigger, dfdyn::hal::Encoder::unknown, frames / 4, engine, sum);
+            fight(arm, trigger, {}, frames / 4, engine, sum);
         }
     }
     check_sum(sum, 0, 0.05);

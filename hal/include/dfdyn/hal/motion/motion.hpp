@@ -22,8 +22,8 @@ namespace dfdyn::hal {
 ///   contradictory readings, or after a clock step to an unexplained position.
 /// - A run from the device's zero, without a motion to there, comes from an encoder that counts from where it
 ///   was switched on (ZeroWatch). It is `position_lost` until the program restarts. Exception: a run that
-///   reverses the jump before it (a stuck bit). An absolute encoder has no such runs. If it is incremental,
-///   doubtful runs to which it can have counted are such runs.
+///   reverses the jump before it (a stuck bit). An absolute encoder has no such runs. An incremental one
+///   also has doubtful runs to which it can have counted.
 /// - Any other run that does not connect is rejected while it continues. It ends with a jump or a silence to
 ///   a position that the joint can have, after twenty times as many readings. A run after a small jump is
 ///   itself trusted after as many. Small: the velocity limit times two periods, or one interval if the period
@@ -165,7 +165,7 @@ class MotionGate : private MotionEvidence {
         if (lost() && still_lost(reading)) {
             candidate_.interrupt();
             count_lost(1);
-            if (jumped_little() && refused_.readings() >= most_readings() && !may_count_from_zero(refused_)) {
+            if (jumped_little() && refused_.readings() >= most_readings()) {
                 believe(MotionRun(refused_));
             }
             return refuse(reading, Reason::position_lost);
@@ -307,7 +307,7 @@ class MotionGate : private MotionEvidence {
     constexpr Verdict lose(const EncoderReading& reading) noexcept {
         const bool new_here = !lost() || !connects(refused_, run());
         const bool at_zero =
-            (begins_at_zero(run()) && !reverses_jump_before(run())) || may_count_from_zero(run());
+            (begins_at_zero(run()) || may_count_from_zero(run())) && !reverses_jump_before(run());
         zero_lost_ = at_zero || (zero_lost_ && !new_here);
         begin_loss(run());
         candidate_.interrupt();

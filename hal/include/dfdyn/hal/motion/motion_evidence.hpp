@@ -166,16 +166,13 @@ class MotionEvidence {
 
     /// Returns true if the run must be long to be trusted.
     [[nodiscard]] constexpr bool is_doubtful() const noexcept {
-        if (trusted_.empty()) {
-            return false;
-        }
         const std::int64_t silence_ns = run().first().stamp_ns - trusted_.last().stamp_ns;
         const bool disturbed =
             (!time_known_ && !(reaches_hidden(run().first()) &&
                                comparison_.reaches_after_silence(trusted_, run().first()))) ||
             (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
         const bool apart = time_known_ && !connects(trusted_, run());
-        return lost() || disturbed || apart || candidate_.contradicted();
+        return !trusted_.empty() && (lost() || disturbed || apart || candidate_.contradicted());
     }
 
     /// Returns the number of readings required after a contradiction.
@@ -302,10 +299,11 @@ class MotionEvidence {
 
     /// Returns true if an incremental encoder that restarted unseen can have counted to the run.
     [[nodiscard]] constexpr bool may_count_from_zero(const MotionRun& run) const noexcept {
-        return !stood_at(run.first()) && zero_.may_explain(trusted_, run, time_known_ ? 0 : clock_s);
+        return !stood_at(run.first()) && !reverses_jump_before(run) &&
+               zero_.may_explain(trusted_, run, time_known_ ? 0 : clock_s);
     }
 
-    /// Returns the shortest silence of a board that restarts (s).
+    /// Shortest silence of a board that restarts (s).
     [[nodiscard]] constexpr double fastest_boot_s() const noexcept {
         return std::max(0.01, 2 * seconds_between(0, config_.period_ns));
     }

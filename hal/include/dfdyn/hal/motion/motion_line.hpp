@@ -16,7 +16,7 @@ struct MotionLimits {
     double velocity = 10;               ///< rad/s
     double acceleration = 100;          ///< rad/s²
     double stop = 20;                   ///< rad/s²; deceleration from a motion to constant readings
-    Encoder encoder = Encoder::unknown; ///< what it shows after a restart
+    Encoder encoder = Encoder::unknown; ///< not a limit, but used with them
 };
 
 /// Straight line through a few readings: position and velocity of a joint.

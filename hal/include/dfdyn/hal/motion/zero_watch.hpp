@@ -54,8 +54,8 @@ class ZeroWatch {
         return goes_on(first, begin, trusted_velocity);
     }
 
-    /// Returns true if an incremental encoder that restarted unseen, between two runs or up to `clock_s`
-    /// before, can have counted to the second one.
+    /// Returns true if an incremental encoder that restarted between two runs can have counted to the second
+    /// one at the faster of their velocities. `clock_s`: additional time, if the clock was set.
     [[nodiscard]] constexpr bool may_explain(const MotionRun& before, const MotionRun& run,
                                              double clock_s) const noexcept {
         const double silence_s = seconds_between(before.last().stamp_ns, run.first().stamp_ns);
