@@ -6,8 +6,9 @@
 
 namespace dfdyn::tests {
 
-/// Returns whether `attempt` is right. Repeats an attempt that is wrong while this machine stalled. After too
-/// many of these in all tests of this program, returns true and warns that the test was not judged.
+/// Returns whether `attempt` is right. In a kernel that does not keep time, repeats an attempt that is wrong
+/// while the machine stalled. After too many of these in all tests of this program, returns true and warns
+/// that the test was not judged. Check outside of the attempt what holds despite stalls.
 bool right_unless_stalled(const std::function<bool()>& attempt);
 
 } // namespace dfdyn::tests
