@@ -33,7 +33,7 @@ inline void print(const CampaignRow& row, const char* trigger) {
               << 100 * share(row.refused_good, row.good) << " % |\n";
 }
 
-/// What the receiver is told of the joints' encoders, and what they are.
+/// The joints' encoders as the receiver has them described, and as they are.
 struct Encoders {
     hal::Encoder described = hal::Encoder::unknown;
     hal::Encoder real = hal::Encoder::unknown;

@@ -290,13 +290,13 @@ class MotionGate : private MotionEvidence {
         if (!enough && !at_rest_at_zero) {
             return refuse(reading, reason);
         }
+        const bool doubtful = is_doubtful();
         if (!trusted_.empty() &&
             (!comes_from_trusted(run(), expected_) || (has_lost_zero() && goes_on_from_refused(run())) ||
-             stays_elsewhere() || away_.away() || (is_doubtful() && may_count_from_zero(run())))) {
+             stays_elsewhere() || away_.away() || (doubtful && may_count_from_zero(run())))) {
             return lose(reading);
         }
-        const bool long_enough = !is_doubtful() || run().readings() >= most_readings();
-        if (!long_enough && !at_rest_at_zero) {
+        if (doubtful && run().readings() < most_readings() && !at_rest_at_zero) {
             return refuse(reading, reason);
         }
         believe(MotionRun(run()));
@@ -307,7 +307,7 @@ class MotionGate : private MotionEvidence {
     constexpr Verdict lose(const EncoderReading& reading) noexcept {
         const bool new_here = !lost() || !connects(refused_, run());
         const bool at_zero =
-            (begins_at_zero(run()) || may_count_from_zero(run())) && !reverses_jump_before(run());
+            (begins_at_zero(run()) && !reverses_jump_before(run())) || may_count_from_zero(run());
         zero_lost_ = at_zero || (zero_lost_ && !new_here);
         begin_loss(run());
         candidate_.interrupt();

@@ -50,6 +50,7 @@ class MotionEvidence {
     struct ShareAtZero {
         const MotionEvidence& evidence; ///< of the joint
         const EncoderReading& first;    ///< first reading of the run
+
         /// Returns the fraction.
         [[nodiscard]] constexpr double operator()(const MotionLine& begin) const noexcept {
             return evidence.begins_at_zero(first, begin) ? 0.25 : 1.0;
@@ -303,7 +304,7 @@ class MotionEvidence {
                zero_.may_explain(trusted_, run, time_known_ ? 0 : clock_s);
     }
 
-    /// Shortest silence of a board that restarts (s).
+    /// Returns the shortest silence of a board that restarts (s).
     [[nodiscard]] constexpr double fastest_boot_s() const noexcept {
         return std::max(0.01, 2 * seconds_between(0, config_.period_ns));
     }

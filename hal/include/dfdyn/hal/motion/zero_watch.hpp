@@ -58,12 +58,14 @@ class ZeroWatch {
     /// one at the faster of their velocities. `clock_s`: additional time, if the clock was set.
     [[nodiscard]] constexpr bool may_explain(const MotionRun& before, const MotionRun& run,
                                              double clock_s) const noexcept {
+        if (tolerance_.limits.encoder != Encoder::incremental || before.empty()) {
+            return false;
+        }
         const double silence_s = seconds_between(before.last().stamp_ns, run.first().stamp_ns);
         const double most =
             travel(run.first(), run.begin_line(0, tolerance_.period_ns),
                    before.end_line(0, tolerance_.period_ns).velocity, std::max(0.0, silence_s) + clock_s);
-        return tolerance_.limits.encoder == Encoder::incremental && !before.empty() &&
-               magnitude(run.first().from_zero_rad) <= most;
+        return magnitude(run.first().from_zero_rad) <= most;
     }
 
     /// Returns true if the joint can have moved to this reading, stamped to within a period, from readings
