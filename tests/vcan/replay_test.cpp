@@ -55,11 +55,12 @@ TEST_CASE("predictions on a live bus are bit-identical to those from its recordi
     const int rate_hz = dfdyn::tests::virtual_time() ? 1000 : 100;
     const int rows = 2 * rate_hz;
     const IcubLog log(rows, rate_hz);
+    const std::uint64_t frames = 4 * static_cast<std::uint64_t>(rows) + 6; // with the sensor's full scales
     constexpr int before_learning = 9 + 4; // readings until an encoder qualifies, plus the lags
     LiveAndReplayed both;
     const bool right = dfdyn::tests::right_unless_stalled([&] {
         both = live_and_replayed(log);
-        return both.again.bus.frames == static_cast<std::uint64_t>(4 * rows + 6) && // and full scales
+        return both.again.bus.frames == frames &&
                both.again.replayed.status.size() > static_cast<std::size_t>(rows * 3 / 4) &&
                (dfdyn::tests::virtual_time() ? both.learned() == rows - before_learning
                                              : both.learned() > rows / 2);
