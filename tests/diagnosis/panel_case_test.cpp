@@ -157,7 +157,8 @@ TEST_CASE("every effect of the catalogue can be hidden") {
         CAPTURE(effect.name);
         CHECK(std::ranges::count(hidden, effect.name) == 1);
     }
-    CHECK(hidden.size() == effect_catalogue().size());
+    CHECK(std::ranges::count(hidden, "greased_backlash") == 1); // backlash, simulated in another way
+    CHECK(hidden.size() == effect_catalogue().size() + 1);
 }
 
 TEST_CASE("unknown names and effects that the outputs cannot show are rejected") {

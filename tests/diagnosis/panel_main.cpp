@@ -68,9 +68,9 @@ int generate(const PanelOptions& options) {
     return 0;
 }
 
-void tell(const PanelOptions& options, const std::string& tables) {
-    std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
-                static_cast<unsigned long long>(*options.seed), tables.c_str());
+void tell(const PanelOptions& options, const std::string& tables, std::size_t made) {
+    std::printf("%zu recordings, seeds from %llu\n\n%s", made, static_cast<unsigned long long>(*options.seed),
+                tables.c_str());
     if (!options.tables.empty()) {
         dfdyn::tools::write_file(options.tables, tables);
     }
@@ -82,7 +82,7 @@ int score(const PanelOptions& options) {
             std::printf("%s\n", describe(one).c_str());
             std::fflush(stdout);
         });
-    tell(options, panel_tables(scores));
+    tell(options, panel_tables(scores), scores.size());
     constexpr double long_s = 200;
     const std::vector<std::string> worse = options.hold
                                                ? setbacks(summarise(scores), options.mix.duration_s >= long_s)
@@ -99,7 +99,7 @@ int watch(const PanelOptions& options) {
             std::printf("%s\n", describe(one).c_str());
             std::fflush(stdout);
         });
-    tell(options, change_tables(scores));
+    tell(options, change_tables(scores), scores.size());
     return 0;
 }
 
@@ -109,7 +109,7 @@ int push(const PanelOptions& options) {
             std::printf("%s\n", describe(one).c_str());
             std::fflush(stdout);
         });
-    tell(options, push_tables(scores));
+    tell(options, push_tables(scores), scores.size());
     return 0;
 }
 

@@ -24,6 +24,7 @@ DrawnEffect rotor_inertia(const EffectDraw& of);
 DrawnEffect joint_spring(const EffectDraw& of);
 DrawnEffect torque_ripple(const EffectDraw& of);
 DrawnEffect backlash(const EffectDraw& of);
+DrawnEffect greased_backlash(const EffectDraw& of);
 DrawnEffect joint_flexibility(const EffectDraw& of);
 DrawnEffect actuator_gain(const EffectDraw& of);
 DrawnEffect payload(const EffectDraw& of);
@@ -82,6 +83,7 @@ constexpr auto catalogue = std::to_array<CatalogueEntry>({
     {"friction_drift", Shows::torque, hidden_effects::friction_drift},
     {"external_contact", Shows::both, hidden_effects::external_contact},
     {"link_rotational_inertia_error", Shows::both, hidden_effects::link_rotational_inertia_error, true},
+    {"greased_backlash", Shows::both, hidden_effects::greased_backlash, true},
 });
 
 /// The robot with the bodies of all payloads, including those that are attached later.
@@ -141,7 +143,7 @@ std::optional<DrawnEffect> draw_effect(const std::string& name, const EffectDraw
     if (!drawn) {
         throw InputError("effect: expected one of the catalogue or outside of it, found " + name);
     }
-    drawn->effect = name;
+    drawn->effect = drawn->effect.empty() ? name : drawn->effect;
     return drawn;
 }
 
@@ -160,6 +162,19 @@ double strongest(const PanelSetup& setup, const Eigen::MatrixXd& difference) {
 }
 
 } // namespace
+
+Eigen::VectorXd joint_torque(const PanelSetup& setup, Eigen::Index joint) {
+    PanelSetup torques = setup;
+    torques.kind.outputs = OutputKind::joint_torque;
+    torques.torque_constants.setOnes();
+    return rigid_outputs(torques, setup.robot, setup.reference).col(joint);
+}
+
+double turning_share(const Eigen::VectorXd& torque) {
+    const auto up = static_cast<double>((torque.array() > 0).count());
+    const double share = up / static_cast<double>(torque.size());
+    return std::min(share, 1 - share);
+}
 
 double strength_along_reference(const PanelSetup& setup, const MotionRows& real) {
     return strongest(setup, rigid_outputs(setup, setup.robot, real) - setup.reference_output);

@@ -8,6 +8,8 @@
 
 namespace dfdyn::tests {
 
+struct PanelRun;
+
 /// An effect with place and shape but without a size. Sizes are positive; signs belong to the shape.
 struct DrawnEffect {
     std::string effect, where;
@@ -15,7 +17,9 @@ struct DrawnEffect {
     std::function<void(double size, tools::Scenario&)> hide;
     std::function<EffectParameters(double size)> parameters; ///< main parameter first
     std::function<void(tools::Robot&)> rebuild;              ///< changes the simulated arm; may be empty
-    bool soft = false;                                       ///< encoders vibrate relative to links
+    /// Changes what the encoders read in a run; may be empty.
+    std::function<void(double size, PanelRun&)> distort;
+    bool soft = false;                 ///< encoders move relative to links
     double guess = 0;                  ///< estimate of the size with the wanted strength
     double smallest = 0;               ///< smaller sizes count as no effect
     double largest = 0;                ///< largest size that is physically reasonable
@@ -56,6 +60,16 @@ inline constexpr double stiff_bend = 5e-4; ///< rad
 /// reversal.
 void add_bristles(tools::LuGreParameters& friction, double level, double bend, double inertia,
                   double fastest = 600);
+
+/// Smallest inertia that the friction of a joint moves during the reference motion.
+double least_inertia(const PanelSetup& setup, Eigen::Index joint);
+
+/// Torque of a joint per row of the reference motion, N·m.
+Eigen::VectorXd joint_torque(const PanelSetup& setup, Eigen::Index joint);
+
+/// Share of time during which the torque has its rarer sign. If the torque never reverses, backlash is only
+/// an offset.
+double turning_share(const Eigen::VectorXd& torque);
 
 /// Root mean square of one joint's column over the reference motion.
 double rms(const Eigen::VectorXd& column);

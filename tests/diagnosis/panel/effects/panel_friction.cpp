@@ -10,9 +10,6 @@ namespace dfdyn::tests {
 
 using namespace tools;
 
-namespace {
-
-/// Smallest inertia that a joint's bristles move during the reference motion.
 double least_inertia(const PanelSetup& setup, Eigen::Index joint) {
     const ArmDynamics dynamics(setup.robot, JointVector::Zero(setup.joints()));
     ArmDynamics::Configuration configuration;
@@ -25,6 +22,8 @@ double least_inertia(const PanelSetup& setup, Eigen::Index joint) {
     }
     return least;
 }
+
+namespace {
 
 LuGreParameters& friction_of(Scenario& scenario, Eigen::Index joint) {
     return scenario.actuators.friction[static_cast<std::size_t>(joint)];

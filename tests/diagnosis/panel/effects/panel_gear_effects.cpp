@@ -81,22 +81,6 @@ void soften(Scenario& scenario, const Gear& soft, double stiffness, double dampi
     retune(scenario, soft.inertia, soft.joint, soft.rotor);
 }
 
-/// Torque through the gear per row of the reference motion, N·m.
-Eigen::VectorXd gear_torque(const PanelSetup& setup, Eigen::Index joint) {
-    PanelSetup torques = setup;
-    torques.kind.outputs = OutputKind::joint_torque;
-    torques.torque_constants.setOnes();
-    return rigid_outputs(torques, setup.robot, setup.reference).col(joint);
-}
-
-/// Share of time during which the torque has its rarer sign. If the torque never reverses, backlash is only
-/// an offset.
-double turning_share(const Eigen::VectorXd& torque) {
-    const auto up = static_cast<double>((torque.array() > 0).count());
-    const double share = up / static_cast<double>(torque.size());
-    return std::min(share, 1 - share);
-}
-
 Eigen::VectorXd second_derivative(const Eigen::VectorXd& values, double period_s) {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(values.size());
     for (Eigen::Index row = 1; row + 1 < values.size(); ++row) {
@@ -109,7 +93,7 @@ DrawnEffect play_of_gear(const EffectDraw& of, const Gear& gear) {
     const Eigen::Index joint = gear.joint;
     const double stiffness = gear.rotor * contact_frequency * contact_frequency;
     const double damping = 0.6 * gear.rotor * contact_frequency;
-    const Eigen::VectorXd torque = gear_torque(of.setup, joint);
+    const Eigen::VectorXd torque = joint_torque(of.setup, joint);
     DrawnEffect effect;
     effect.hide = [gear, stiffness, damping](double size, Scenario& scenario) {
         soften(scenario, gear, stiffness, damping, size);
@@ -130,7 +114,7 @@ DrawnEffect play_of_gear(const EffectDraw& of, const Gear& gear) {
 DrawnEffect flexibility(const EffectDraw& of, const Gear& gear) {
     const Eigen::Index joint = gear.joint;
     const double loss = of.draw.uniform(0.02, 0.06); // damping ratio of the rotor on the gear
-    const Eigen::VectorXd torque = gear_torque(of.setup, joint);
+    const Eigen::VectorXd torque = joint_torque(of.setup, joint);
     DrawnEffect effect;
     effect.hide = [gear, loss](double size, Scenario& scenario) {
         soften(scenario, gear, 1 / size, 2 * loss * std::sqrt(gear.rotor / size), 0);

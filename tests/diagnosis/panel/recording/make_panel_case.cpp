@@ -60,8 +60,8 @@ Fitted draw_fitted(const PanelSetup& setup, const std::vector<std::string>& name
         }
         ++result.redraws;
     }
-    throw InputError("expected an effect that can have strength " + std::to_string(strength) +
-                     ", found none");
+    throw ImpossibleCase("expected an effect that can have strength " + std::to_string(strength) +
+                         ", found none");
 }
 
 void describe(const PanelSetup& setup, const Fitted& fitted, PanelCase& result) {

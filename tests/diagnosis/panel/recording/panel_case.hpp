@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/base/recording/recording.hpp"
+#include "tools/base/text/error.hpp"
 #include "tools/robot/robot.hpp"
 
 #include <cstdint>
@@ -74,8 +75,15 @@ std::vector<std::string> panel_noise_names();
 std::vector<std::string> panel_effect_names(bool all = false);
 std::vector<std::string> outside_effect_names();
 
+/// The arm and the motion of a case cannot have the requested effect in the requested strength.
+class ImpossibleCase : public tools::InputError {
+  public:
+    using InputError::InputError;
+};
+
 /// Makes the case of `seed`; equal seeds and mixes give equal bytes. Throws InputError for an unknown name or
-/// an effect that the requested outputs cannot show. Cost: one to five simulations of about a second each.
+/// an effect that the requested outputs cannot show, ImpossibleCase as described there. Cost: one to five
+/// simulations of about a second each.
 PanelCase make_panel_case(std::uint64_t seed, const PanelMix& mix = {});
 
 } // namespace dfdyn::tests

@@ -20,7 +20,7 @@ constexpr int most_simulations = 4;
 PanelRun empty_run(const PanelSetup& setup, const Scenario& scenario) {
     const auto rows = static_cast<Eigen::Index>(scenario.recording.samples);
     PanelRun run;
-    run.position = run.friction = Eigen::MatrixXd(rows, setup.joints());
+    run.position = run.friction = run.torque = Eigen::MatrixXd(rows, setup.joints());
     run.shown = {run.position, run.position, run.position};
     run.output = Eigen::MatrixXd(rows, setup.outputs());
     return run;
@@ -94,6 +94,12 @@ Columns columns(std::vector<std::string> names, const Eigen::MatrixXd& rows) {
     return result;
 }
 
+void distort(const DrawnEffect& effect, double size, PanelRun& run) {
+    if (effect.distort) {
+        effect.distort(size, run);
+    }
+}
+
 } // namespace
 
 PanelRun run_panel(const PanelSetup& setup, const Robot& robot, const Scenario& scenario) {
@@ -104,6 +110,7 @@ PanelRun run_panel(const PanelSetup& setup, const Robot& robot, const Scenario& 
         run.time_s.push_back(sample.time_s);
         run.position.row(row) = sample.position.transpose();
         run.friction.row(row) = sample.truth.friction.transpose();
+        run.torque.row(row) = sample.torque.transpose();
         for (Eigen::Index joint = 0; joint < setup.joints(); ++joint) {
             show(run.shown, row, joint, sample.truth, scenario.encoders);
         }
@@ -159,6 +166,7 @@ std::optional<Fitted> fit_strength(const PanelSetup& setup, const DrawnEffect& e
         ++fitted.simulations;
         try {
             fitted.run = run_panel(setup, robot, scenario);
+            distort(effect, fitted.size, fitted.run);
         } catch (const InputError&) { // the arm is unstable, or a link would have no mass
             return std::nullopt;
         }
@@ -183,7 +191,11 @@ PanelRun run_effects(const PanelSetup& setup, const std::vector<const Fitted*>& 
     for (const Fitted* fitted : effects) {
         hide(fitted->effect, fitted->size, robot, scenario);
     }
-    return run_panel(setup, robot, scenario);
+    PanelRun run = run_panel(setup, robot, scenario);
+    for (const Fitted* fitted : effects) {
+        distort(fitted->effect, fitted->size, run);
+    }
+    return run;
 }
 
 } // namespace dfdyn::tests

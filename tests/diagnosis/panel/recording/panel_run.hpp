@@ -12,6 +12,7 @@ struct PanelRun {
     MotionRows shown;         ///< without quantisation, with the rates that the encoders imply
     Eigen::MatrixXd output;   ///< in the units of the recording
     Eigen::MatrixXd friction; ///< N·m, per joint
+    Eigen::MatrixXd torque;   ///< N·m, per joint
 };
 
 /// Simulates the scenario. Throws InputError if the arm becomes unstable.

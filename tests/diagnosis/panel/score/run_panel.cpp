@@ -5,14 +5,28 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
 namespace dfdyn::tests {
 
 namespace {
 
-CaseScore run_case(std::uint64_t seed, const PanelMix& mix) {
-    const PanelCase panel_case = make_panel_case(seed, mix);
+std::optional<PanelCase> possible_case(std::uint64_t seed, const PanelMix& mix) {
+    try {
+        return make_panel_case(seed, mix);
+    } catch (const ImpossibleCase&) {
+        return std::nullopt;
+    }
+}
+
+std::optional<CaseScore> run_case(std::uint64_t seed, const PanelMix& mix) {
+    const std::optional<PanelCase> made = possible_case(seed, mix);
+    if (!made) {
+        return std::nullopt;
+    }
+    const PanelCase& panel_case = *made;
     tools::DiagnosisOptions options;
     options.outputs = panel_case.outputs;
     options.measure = is_exact(panel_case);
@@ -30,16 +44,18 @@ CaseScore run_case(std::uint64_t seed, const PanelMix& mix) {
 
 std::vector<CaseScore> run_panel(std::uint64_t seed, int cases, const PanelMix& mix, int threads,
                                  const std::function<void(const CaseScore&)>& done) {
-    std::vector<CaseScore> scores(static_cast<std::size_t>(cases));
+    std::vector<std::optional<CaseScore>> scores(static_cast<std::size_t>(cases));
     std::atomic<int> next{0};
     std::mutex mutex;
     std::exception_ptr failure;
     const auto work = [&] {
         try {
             for (int number = next++; number < cases; number = next++) {
-                CaseScore score = run_case(seed + static_cast<std::uint64_t>(number), mix);
+                std::optional<CaseScore> score = run_case(seed + static_cast<std::uint64_t>(number), mix);
                 const std::lock_guard lock(mutex);
-                done(score);
+                if (score) {
+                    done(*score);
+                }
                 scores[static_cast<std::size_t>(number)] = std::move(score);
             }
         } catch (...) {
@@ -58,7 +74,13 @@ std::vector<CaseScore> run_panel(std::uint64_t seed, int cases, const PanelMix& 
     if (failure) {
         std::rethrow_exception(failure);
     }
-    return scores;
+    std::vector<CaseScore> made;
+    for (std::optional<CaseScore>& score : scores) {
+        if (score) {
+            made.push_back(*std::move(score));
+        }
+    }
+    return made;
 }
 
 } // namespace dfdyn::tests
