@@ -8,14 +8,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace dfdyn::tools {
 
 namespace {
 
-// Relative model error: the link's share of the joint's motion in the gap is uncertain. For simulated gears
-// the estimated gap is up to 13 % too wide.
+// Relative model error of a gap with impacts: the link's share of the joint's motion in the gap is uncertain.
+// For simulated gears the estimated gap is up to 13 % too wide.
 constexpr ParameterKind backlash_gap{"gap", "rad", 0, 0.08};
+// Without impacts it is uncertain how the link changes flanks.
+constexpr ParameterKind greased_gap{"gap", "rad", 0, 0.2};
 
 /// Displacement (rad, T) of a link relative to its motor. A flank of the gear's teeth carries the link. When
 /// the load changes sign, the link falls through the gap, and the other flank catches it without rebound.
@@ -43,11 +46,103 @@ Eigen::VectorXd travel_in_gap(const DiagnosisSignals& signals, Eigen::Index join
     return travel;
 }
 
+/// The hardness of the tooth impact, and the time in which the link changes flanks, are unknown. Below this
+/// frequency (Hz) they hardly matter.
+constexpr double sure_hz = 7;
+
+Eigen::VectorXd sure_part(const DiagnosisSignals& signals, std::size_t joint, const Eigen::VectorXd& travel) {
+    const double smoothing_hz = signals.measured.smoothing_hz[static_cast<Eigen::Index>(joint)];
+    return smooth_change(signals, joint, travel, std::min(1.0, sure_hz / smoothing_hz));
+}
+
+std::string family_of(std::size_t joint) { return "backlash at " + numbered("joint", joint); }
+
+/// How a link changes flanks without an impact. Loads are relative to the rms of the rigid body's torque.
+struct Greased {
+    double friction; ///< dry friction at the link
+    double wide;   ///< of a soft gear: load that holds the link at three quarters of its travel. 0: of grease
+    double time_s; ///< lag of the soft gear, or time in which a load of 1 moves the link through the grease
+};
+
+/// Displacement (T) of a link that follows its load from flank to flank, per gap.
+Eigen::VectorXd travel_in_grease(const DiagnosisSignals& signals, Eigen::Index joint, const Greased& gear) {
+    constexpr double load_hz = 2.5; // faster, the measured acceleration shows the changes of flank themselves
+    const Eigen::VectorXd torque = signals.joint_torque.col(joint);
+    const double rms = std::max(1e-9, torque.norm() / std::sqrt(static_cast<double>(torque.size())));
+    const Eigen::VectorXd load =
+        signals.below(load_hz, torque / rms + gear.friction * signals.direction(joint));
+    const double steps = 1 / (signals.measured.rate_hz * gear.time_s);
+    const bool soft = gear.wide > 0;
+    Eigen::VectorXd travel(signals.rows());
+    for (const Stretch& stretch : signals.measured.stretches) {
+        double position = std::copysign(0.5, -load[stretch.first]);
+        for (Eigen::Index row = stretch.first; row < stretch.first + stretch.count; ++row) {
+            position -= soft ? (0.5 * std::tanh(load[row] / gear.wide) + position) * -std::expm1(-steps)
+                             : steps * load[row];
+            travel[row] = position = std::clamp(position, -0.5, 0.5);
+        }
+    }
+    return travel;
+}
+
+std::vector<Greased> all_greased() {
+    std::vector<Greased> gears;
+    for (const double friction : {0.0, 0.4, 0.8}) {
+        gears.push_back({friction, 0.1, 0.03});
+        gears.push_back({friction, 0, 0.03});
+        gears.push_back({friction, 0, 0.1});
+    }
+    return gears;
+}
+
+/// Returns a gear and those a little different from it.
+std::vector<Greased> near(const Greased& gear) {
+    const auto& [friction, wide, time_s] = gear;
+    std::vector<Greased> gears{gear,
+                               {std::max(0.0, friction - 0.15), wide, time_s},
+                               {friction + 0.15, wide, time_s},
+                               {friction, wide, 1.3 * time_s},
+                               {friction, wide, time_s / 1.3}};
+    if (wide > 0) {
+        gears.push_back({friction, 1.5 * wide, time_s});
+        gears.push_back({friction, wide / 1.5, time_s});
+    }
+    return gears;
+}
+
+/// Change of the outputs (T x m) per gap.
+Eigen::MatrixXd greased_course(const DiagnosisSignals& signals, std::size_t joint, const Greased& gear) {
+    const Eigen::VectorXd travel = travel_in_grease(signals, static_cast<Eigen::Index>(joint), gear);
+    return signals.of_position(joint, sure_part(signals, joint, travel));
+}
+
+/// Backlash without impacts, as with grease in the gap or friction at the link. The gap is the coefficient.
+Candidate greased_candidate(const DiagnosisSignals& signals, std::size_t joint,
+                            const std::vector<Greased>& gears) {
+    constexpr double widest = 0.15; // rad
+    Candidate result;
+    result.where = numbered("joint", joint);
+    result.family = family_of(joint);
+    result.detail = "without impacts";
+    for (const Greased& gear : gears) {
+        result.shapes.push_back({{result.columns.size()}, positive_up_to(widest)});
+        result.columns.push_back(on_outputs(greased_course(signals, joint, gear)));
+    }
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
+        return std::vector{greased_gap.at(coefficients[0])};
+    };
+    result.about = [&signals, joint, gears](const EffectShape& shape, const Eigen::VectorXd&) {
+        return greased_candidate(signals, joint, near(gears[shape.columns.front()]));
+    };
+    return result;
+}
+
 constexpr double narrowest_gap = 5e-4; // rad
 constexpr double widest_gap = 0.1;
 constexpr double gap_ratio = 1.5; // from one gap to the next
+constexpr double fall_gaps = 14;  // courses with impacts of each joint
 
-/// Searches, for each joint, for the gap whose torque course correlates best with the residual.
+/// Searches, for each joint, for the course that correlates best with the residual.
 class BacklashScan : public EffectScan {
   public:
     BacklashScan(const DiagnosisSignals& signals, const SpectralRows& rows);
@@ -55,47 +150,74 @@ class BacklashScan : public EffectScan {
 
   private:
     struct Course {
-        double gap = 0;
-        Eigen::MatrixXd series; ///< T x m
-        Eigen::MatrixXd power;  ///< bins x m: sums of squares
+        std::size_t joint = 0;
+        double gap = 0;              ///< with impacts
+        std::optional<Greased> gear; ///< without impacts
+        Eigen::MatrixXd series;      ///< T x m
+        Eigen::MatrixXd power;       ///< bins x m: sums of squares
     };
-    std::vector<std::vector<Course>> courses_; ///< per joint
+    struct Best {
+        const Course* course = nullptr;
+        double gain = 0; ///< twice the log-evidence of its column alone
+    };
+    void add(const SpectralRows& rows, Course course);
+    Best best(const FittedResidual& residual, std::size_t joint, bool impacts) const;
+
+    std::vector<Course> courses_;
 };
 
-BacklashScan::BacklashScan(const DiagnosisSignals& signals, const SpectralRows& rows)
-    : courses_(signals.joints()) {
+BacklashScan::BacklashScan(const DiagnosisSignals& signals, const SpectralRows& rows) {
     for (std::size_t joint = 0; joint < signals.joints(); ++joint) {
         for (double gap = narrowest_gap; gap < widest_gap; gap *= gap_ratio) {
-            Course course{gap, play_course(signals, joint, gap),
-                          Eigen::MatrixXd(rows.bins(), signals.outputs())};
-            for (Eigen::Index output = 0; output < signals.outputs(); ++output) {
-                course.power.col(output) =
-                    rows.analyse(course.series.col(output), output).rowwise().squaredNorm();
-            }
-            courses_[joint].push_back(std::move(course));
+            add(rows, {joint, gap, {}, play_course(signals, joint, gap), {}});
+        }
+        for (const Greased& gear : all_greased()) {
+            add(rows, {joint, 0, gear, greased_course(signals, joint, gear), {}});
         }
     }
 }
 
-std::vector<Candidate> BacklashScan::candidates(const FittedResidual& residual) const {
-    std::vector<Candidate> result;
-    for (std::size_t joint = 0; joint < courses_.size(); ++joint) {
-        double best = 0;
-        double found = 0;
-        for (const Course& course : courses_[joint]) {
-            const double product = residual.weighted.cwiseProduct(course.series).sum();
-            const double energy = course.power.cwiseQuotient(residual.regression.noise()).sum();
-            const double gain = product > 0 && energy > 0 ? product * product / energy : 0;
-            if (gain > best) {
-                best = gain;
-                found = course.gap;
-            }
+void BacklashScan::add(const SpectralRows& rows, Course course) {
+    course.power.resize(rows.bins(), course.series.cols());
+    for (Eigen::Index output = 0; output < course.series.cols(); ++output) {
+        course.power.col(output) = rows.analyse(course.series.col(output), output).rowwise().squaredNorm();
+    }
+    courses_.push_back(std::move(course));
+}
+
+BacklashScan::Best BacklashScan::best(const FittedResidual& residual, std::size_t joint, bool impacts) const {
+    Best best;
+    for (const Course& course : courses_) {
+        if (course.joint != joint || course.gear.has_value() == impacts) {
+            continue;
         }
-        if (found > 0) {
+        const double product = residual.weighted.cwiseProduct(course.series).sum();
+        const double energy = course.power.cwiseQuotient(residual.regression.noise()).sum();
+        const double gain = product > 0 && energy > 0 ? product * product / energy : 0;
+        if (gain > best.gain) {
+            best = {&course, gain};
+        }
+    }
+    return best;
+}
+
+/// A greased gear fits many courses. It is preferred only where it is clearly better than an impact.
+std::vector<Candidate> BacklashScan::candidates(const FittedResidual& residual) const {
+    constexpr double clearly = 20; // of gain
+    std::vector<Candidate> result;
+    for (std::size_t joint = 0; joint < residual.signals.joints(); ++joint) {
+        const Best impact = best(residual, joint, true);
+        const Best greased = best(residual, joint, false);
+        if (greased.gain > impact.gain + clearly) {
+            result.push_back(greased_candidate(residual.signals, joint, near(*greased.course->gear)));
+        } else if (impact.course != nullptr) {
+            const double found = impact.course->gap;
             result.push_back(
                 backlash_candidate(residual.signals, joint, {found, found / 1.25, found * 1.25}));
-            result.back().tried = static_cast<double>(courses_[joint].size()) / 3;
+        } else {
+            continue;
         }
+        result.back().tried = fall_gaps / 3;
     }
     return result;
 }
@@ -103,18 +225,15 @@ std::vector<Candidate> BacklashScan::candidates(const FittedResidual& residual) 
 } // namespace
 
 Eigen::MatrixXd play_course(const DiagnosisSignals& signals, std::size_t joint, double gap) {
-    constexpr double sure_hz = 7; // the hardness of the tooth impact is unknown
-    const auto index = static_cast<Eigen::Index>(joint);
-    const Eigen::VectorXd travel = travel_in_gap(signals, index, gap) / gap;
-    return signals.of_position(
-        joint,
-        smooth_change(signals, joint, travel, std::min(1.0, sure_hz / signals.measured.smoothing_hz[index])));
+    const Eigen::VectorXd travel = travel_in_gap(signals, static_cast<Eigen::Index>(joint), gap) / gap;
+    return signals.of_position(joint, sure_part(signals, joint, travel));
 }
 
 Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
                              const std::vector<double>& gaps) {
     Candidate result;
     result.where = numbered("joint", joint);
+    result.family = family_of(joint);
     for (const double gap : gaps) {
         const auto allowed = [gap](const Eigen::VectorXd& coefficients) {
             constexpr double least = 0.25; // only the link's share of the joint's inertia is caught
@@ -126,8 +245,12 @@ Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
     }
     // The gap follows from the course, that is, from the duration of the fall. The coefficient only describes
     // how hard the link is caught.
-    result.parameters = [](const Eigen::VectorXd&, const EffectShape& shape) {
-        return std::vector{backlash_gap.at(shape.value)};
+    // If the link was caught more softly, as in grease, the coefficient is the gap.
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        EffectParameter gap = backlash_gap.at(shape.value);
+        const double softer = std::max(0.0, 1 - coefficients[0] / shape.value);
+        gap.systematic_relative_std = std::hypot(gap.systematic_relative_std, softer / 2);
+        return std::vector{gap};
     };
     result.about = [&signals, joint](const EffectShape& shape, const Eigen::VectorXd&) {
         const double found = shape.value;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/diagnosis/panel/score/run_panel.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+using namespace dfdyn::tests;
+
+namespace {
+
+/// Requires the hidden backlash of a recording to be named with its gap.
+void check_named(const PanelMix& mix, std::uint64_t seed) {
+    const std::vector<CaseScore> scores = run_panel(seed, 1, mix, 1, [](const CaseScore&) {});
+    REQUIRE(scores.size() == 1);
+    INFO(describe(scores.front()));
+    const EffectScore& play = scores.front().effects.front();
+    CHECK(play.strength > 2.5);
+    REQUIRE(play.named);
+    CHECK(play.relative_error < 0.2);
+    CHECK(play.in_interval);
+}
+
+} // namespace
+
+TEST_CASE("backlash is named with its gap even if the impact is not the whole joint's") {
+    for (const auto& [robot, seed] :
+         {std::pair{"three_joint_torque", 101600}, std::pair{"ur5_torque", 101604}}) {
+        PanelMix mix;
+        mix.effect = "backlash";
+        mix.robot = robot;
+        check_named(mix, static_cast<std::uint64_t>(seed));
+    }
+}
+
+TEST_CASE("backlash without impacts is named with its gap, with and without friction at the link") {
+    PanelMix mix;
+    mix.effect = "greased_backlash";
+    mix.strength = 3;
+    for (const std::uint64_t seed : {303044, 303058}) {
+        check_named(mix, seed);
+    }
+}
