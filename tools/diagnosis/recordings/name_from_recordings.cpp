@@ -116,12 +116,11 @@ class TermNamer {
         finding.parameters = {
             parameter_within(kind.name, kind.unit, value, std::hypot(deviation, finding.spread))};
         finding.confidence = probability_of_size(value, std::hypot(deviation, finding.spread));
-        const bool may_be_none = finding.parameters.front().low < 0 && finding.parameters.front().high > 0;
-        if (may_be_none || (!effect.friction && std::abs(value) < clear * deviation)) {
+        if (!effect.friction && everywhere_ && std::abs(value) < std::hypot(deviation, finding.spread)) {
+            return; // noise
+        }
+        if (!effect.friction && std::abs(value) < clear * deviation) {
             finding.confidence = std::min(finding.confidence, unlikely);
-            if (!effect.friction && everywhere_ && std::abs(value) < std::hypot(deviation, finding.spread)) {
-                return; // noise
-            }
         }
         finding.margin_to_nothing = 0.5 * std::pow(value / deviation, 2);
         finding.margin_to_others = std::numeric_limits<double>::infinity();

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -175,6 +176,18 @@ void add_push(std::vector<Finding>& findings, Finding push) {
     }
 }
 
+/// Returns whether the only size of a finding has an interval that contains the value without the effect.
+bool may_be_none(const Finding& finding) {
+    const Effect& effect = effect_named(finding.effect);
+    const std::optional<double> none = effect.parameters.front().null_value;
+    if (finding.parameters.empty()) {
+        return false;
+    }
+    const FoundParameter& size = finding.parameters.front();
+    const bool only_size = effect.textbook || effect.parameters.size() == 1;
+    return only_size && none && size.low < size.high && size.low <= *none && *none <= size.high;
+}
+
 } // namespace
 
 std::string confirmation(const Finding& finding) {
@@ -203,7 +216,7 @@ void doubt_useless_findings(Diagnosis& diagnosis) {
         const bool unexplained = diagnosis.extended.nrmse[finding.output] > 1;
         const bool no_gain = !has_trait(finding.effect, &Effect::interval) &&
                              finding.rms_before < least_gain * finding.rms_after;
-        if (unexplained || no_gain) {
+        if (unexplained || no_gain || may_be_none(finding)) {
             finding.confidence = std::min(finding.confidence, unlikely);
         }
     }

@@ -25,8 +25,8 @@ std::string confirmation(const Finding& finding);
 double calibrated_confidence(const Finding& finding, double duration_s);
 
 /// Lowers the confidence of unreliable findings below 0.5: at outputs where even the extended model errs by
-/// more than the output's standard deviation, and those that reduce no error by 1 %. Events are short and
-/// exempt from the latter.
+/// more than the output's standard deviation, those that reduce no error by 1 % (not events, which are
+/// short), and those whose size may be that without the effect.
 void doubt_useless_findings(Diagnosis& diagnosis);
 
 } // namespace dfdyn::tools

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -101,6 +102,23 @@ double reach_of_95(double deviation, double effect) {
 FoundParameter parameter_within(std::string name, std::string unit, double value, double deviation) {
     const double reach = deviations_of_95 * deviation;
     return {std::move(name), std::move(unit), value, value - reach, value + reach};
+}
+
+FoundParameter positive_parameter(std::string name, std::string unit, double value, double deviation) {
+    const auto below = [&](double limit) {
+        return 0.5 * std::erfc((value - limit) / (deviation * std::numbers::sqrt2));
+    };
+    const auto quantile = [&](double share) {
+        const double wanted = below(0) + share * (1 - below(0));
+        double low = 0;
+        double high = std::max(0.0, value) + 10 * deviation;
+        for (int halving = 0; halving < 60; ++halving) {
+            const double middle = (low + high) / 2;
+            (below(middle) < wanted ? low : high) = middle;
+        }
+        return low;
+    };
+    return {std::move(name), std::move(unit), value, quantile(0.025), quantile(0.975)};
 }
 
 double deviation_of(const FoundParameter& parameter) {

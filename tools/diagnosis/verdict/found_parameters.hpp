@@ -18,6 +18,10 @@ double reach_of_95(double deviation, double effect);
 /// Returns a parameter with its 95 % interval, from its standard deviation.
 FoundParameter parameter_within(std::string name, std::string unit, double value, double deviation);
 
+/// Returns a parameter that is certainly positive, with the 95 % interval of a normal distribution without
+/// its negative part.
+FoundParameter positive_parameter(std::string name, std::string unit, double value, double deviation);
+
 /// Standard deviation that corresponds to a 95 % interval.
 double deviation_of(const FoundParameter& parameter);
 

@@ -46,12 +46,15 @@ Finding finding_of(const DiagnosisWork& work, const Effect& effect, const Moving
     Finding finding;
     finding.effect = effect.name;
     finding.where = numbered("joint", static_cast<std::size_t>(output));
-    finding.parameters = {{kind.name, kind.unit, value, value - reach, value + reach}};
+    const bool certain = everywhere && effect.friction;
+    finding.parameters = {certain
+                              ? positive_parameter(kind.name, kind.unit, value, deviation)
+                              : FoundParameter{kind.name, kind.unit, value, value - reach, value + reach}};
     finding.margin_to_nothing = 0.5 * std::pow(value / deviation, 2) - price;
     finding.margin_to_others = std::numeric_limits<double>::infinity();
     const double duration_s = static_cast<double>(work.signals->rows()) / work.signals->measured.rate_hz;
-    finding.confidence = everywhere && effect.friction ? probability_of_size(value, deviation)
-                                                       : calibrated_confidence(finding, duration_s);
+    finding.confidence =
+        certain ? probability_of_size(value, deviation) : calibrated_confidence(finding, duration_s);
     finding.confirm = confirmation(finding);
     return finding;
 }

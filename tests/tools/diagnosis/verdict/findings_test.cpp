@@ -7,6 +7,7 @@
 #include "tests/tools/robot/arms.hpp"
 #include "tools/base/numerics/root_mean_square.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/verdict/found_parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -160,6 +161,45 @@ TEST_CASE("a push at a joint at rest is reported with its force and the share th
     CHECK(finding.evidence.find("joint3 is stationary") == 0);
     CHECK(finding.evidence.find("10 ± 3.92 N·m") != std::string::npos);
     CHECK(finding.share == push.share);
+}
+
+TEST_CASE("the interval of a certain, positive size has 95 % of the positive half of its distribution") {
+    const auto below = [](double limit, double mean, double deviation) {
+        return 0.5 * std::erfc((mean - limit) / (deviation * std::numbers::sqrt2));
+    };
+    for (const double deviation : {0.1, 1.0, 3.0}) {
+        const FoundParameter one = positive_parameter("viscous", "N·m·s/rad", 2, deviation);
+        CAPTURE(deviation, one.low, one.high);
+        const double none = below(0, 2, deviation);
+        CHECK(one.low > 0);
+        CHECK((below(one.low, 2, deviation) - none) / (1 - none) == Approx(0.025));
+        CHECK((below(one.high, 2, deviation) - none) / (1 - none) == Approx(0.975));
+    }
+    // far from zero it is the usual interval
+    CHECK(positive_parameter("viscous", "N·m·s/rad", 2, 0.1).low == Approx(2 - 0.196).epsilon(1e-3));
+}
+
+TEST_CASE("a cause whose only size may be none is below 0.5, and a wrong link with one certain part is not") {
+    const auto confidence_of = [](const std::string& effect, std::vector<FoundParameter> parameters) {
+        Diagnosis diagnosis;
+        diagnosis.extended.nrmse = VectorXd::Constant(1, 0.2);
+        Finding finding;
+        finding.effect = effect;
+        finding.parameters = std::move(parameters);
+        finding.confidence = 0.9;
+        finding.rms_before = 2;
+        finding.rms_after = 1;
+        diagnosis.findings = {finding};
+        doubt_useless_findings(diagnosis);
+        return diagnosis.findings.front().confidence;
+    };
+    CHECK(confidence_of("viscous_friction", {{"viscous", "N·m·s/rad", 2, 0.1, 3.9}}) == 0.9);
+    CHECK(confidence_of("viscous_friction", {{"viscous", "N·m·s/rad", 2, -0.1, 4.1}}) < 0.5);
+    CHECK(confidence_of("actuator_gain", {{"gain", "1", 1.1, 0.9, 1.3}}) < 0.5);
+    CHECK(confidence_of("actuator_gain", {{"gain", "1", 1.1, 1.05, 1.15}}) == 0.9);
+    CHECK(confidence_of("viscous_friction", {{"viscous", "N·m·s/rad", 2, 2, 2}}) == 0.9); // not fitted
+    CHECK(confidence_of("link_inertia_error",
+                        {{"delta_mass", "kg", 0.1, -1, 1.2}, {"delta_com_x", "m", 0.1, 0.05, 0.15}}) == 0.9);
 }
 
 } // namespace findings_test
