@@ -200,11 +200,10 @@ TEMPLATE_TEST_CASE("learning between ticks gives the same bits and stays within 
 
 TEST_CASE("the cost of a tick is a constant expression of the model's sizes") {
     constexpr Cost cost = Estimator<UdFloat>::cost();
-    static_assert(cost.predict > 0 && cost.variance > 0 && cost.learn > cost.largest_step);
+    STATIC_REQUIRE(cost.predict > 0 && cost.variance > 0 && cost.learn > cost.largest_step);
     // Inputs: n k (M+2); features: d n k and the cosines and sines; weights: m 2d; estimate: 14 + m (15 + a
     // square root).
-    static_assert(cost.predict == 2 * 3 * 8 + 15 * 6 + cos_sin_cost<float>(15) + 2 * 30 + 2 * 45 + 14);
-    SUCCEED();
+    STATIC_REQUIRE(cost.predict == 2 * 3 * 8 + 15 * 6 + cos_sin_cost<float>(15) + 2 * 30 + 2 * 45 + 14);
 }
 
 } // namespace estimator_budget_test

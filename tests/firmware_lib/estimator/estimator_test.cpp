@@ -248,11 +248,10 @@ TEMPLATE_TEST_CASE("reset returns to the initial state, restart_window keeps the
 TEST_CASE("counters do not overflow within a million years at 10 kHz") {
     constexpr std::uint64_t ticks = std::uint64_t{10'000} * 3600 * 24 * 365 * 1'000'000;
     using Number = decltype(Counters::ticks);
-    static_assert(std::numeric_limits<Number>::max() > ticks);
-    static_assert(std::is_same_v<Number, decltype(Counters::predicted)>);
-    static_assert(std::is_same_v<Number, decltype(Counters::learned)>);
-    static_assert(std::is_same_v<Number&, decltype(std::declval<Counters&>().reasons[0])>);
-    SUCCEED();
+    STATIC_REQUIRE(std::numeric_limits<Number>::max() > ticks);
+    STATIC_REQUIRE(std::is_same_v<Number, decltype(Counters::predicted)>);
+    STATIC_REQUIRE(std::is_same_v<Number, decltype(Counters::learned)>);
+    STATIC_REQUIRE(std::is_same_v<Number&, decltype(std::declval<Counters&>().reasons[0])>);
 }
 
 } // namespace estimator_test

@@ -52,10 +52,9 @@ TEST_CASE("DF is ready after M+1 samples") {
 }
 
 TEST_CASE("DFW equals DF with the weights as part of the scale") {
-    static_assert(std::is_base_of_v<Input, DerivativeFreeWeighted<lags>>);
-    static_assert(DerivativeFreeWeighted<lags>::features_per_joint == lags + 1);
-    static_assert(Map::cost(joints, lags, lags + 1) == joints * (lags + 1));
-    SUCCEED();
+    STATIC_REQUIRE(std::is_base_of_v<Input, DerivativeFreeWeighted<lags>>);
+    STATIC_REQUIRE(DerivativeFreeWeighted<lags>::features_per_joint == lags + 1);
+    STATIC_REQUIRE(Map::cost(joints, lags, lags + 1) == joints * (lags + 1));
 }
 
 } // namespace derivative_free_test

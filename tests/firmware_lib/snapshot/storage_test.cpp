@@ -48,13 +48,12 @@ TEST_CASE("an extent of fixed size takes no memory and converts to its value") {
         [[no_unique_address]] Extent<3> three;
         float number;
     };
-    static_assert(sizeof(Holder) == sizeof(float));
-    static_assert(Extent<3>{} == 3 && extent<3>(3) == 3);
-    static_assert(extent<dynamic>(5) == 5);
-    static_assert(product(2, 3) == 6 && sum(2, 3) == 5);
-    static_assert(product(dynamic, 3) == dynamic && product(3, dynamic) == dynamic);
-    static_assert(sum(dynamic, 1) == dynamic && sum(1, dynamic) == dynamic);
-    SUCCEED();
+    STATIC_REQUIRE(sizeof(Holder) == sizeof(float));
+    STATIC_REQUIRE(Extent<3>{} == 3 && extent<3>(3) == 3);
+    STATIC_REQUIRE(extent<dynamic>(5) == 5);
+    STATIC_REQUIRE(product(2, 3) == 6 && sum(2, 3) == 5);
+    STATIC_REQUIRE(product(dynamic, 3) == dynamic && product(3, dynamic) == dynamic);
+    STATIC_REQUIRE(sum(dynamic, 1) == dynamic && sum(1, dynamic) == dynamic);
 }
 
 } // namespace storage_test
