@@ -143,7 +143,9 @@ std::optional<DrawnEffect> draw_effect(const std::string& name, const EffectDraw
     if (!drawn) {
         throw InputError("effect: expected one of the catalogue or outside of it, found " + name);
     }
-    drawn->effect = drawn->effect.empty() ? name : drawn->effect;
+    if (drawn->effect.empty()) {
+        drawn->effect = name;
+    }
     return drawn;
 }
 
@@ -168,12 +170,6 @@ Eigen::VectorXd joint_torque(const PanelSetup& setup, Eigen::Index joint) {
     torques.kind.outputs = OutputKind::joint_torque;
     torques.torque_constants.setOnes();
     return rigid_outputs(torques, setup.robot, setup.reference).col(joint);
-}
-
-double turning_share(const Eigen::VectorXd& torque) {
-    const auto up = static_cast<double>((torque.array() > 0).count());
-    const double share = up / static_cast<double>(torque.size());
-    return std::min(share, 1 - share);
 }
 
 double strength_along_reference(const PanelSetup& setup, const MotionRows& real) {

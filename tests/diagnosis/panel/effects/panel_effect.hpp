@@ -67,9 +67,13 @@ double least_inertia(const PanelSetup& setup, Eigen::Index joint);
 /// Torque of a joint per row of the reference motion, N·m.
 Eigen::VectorXd joint_torque(const PanelSetup& setup, Eigen::Index joint);
 
-/// Share of time during which the torque has its rarer sign. If the torque never reverses, backlash is only
-/// an offset.
-double turning_share(const Eigen::VectorXd& torque);
+/// Adds dry friction whose bristles bend by `bend` (rad).
+void add_dry_friction(tools::Scenario& scenario, Eigen::Index joint, double level, double bend,
+                      double inertia);
+
+/// Estimates the gap (rad) with the wanted strength if the link is always on the flank of its load (N·m, per
+/// row of the reference motion). 0 if the load hardly reverses: then backlash is only an offset.
+double guess_of_gap(const EffectDraw& of, Eigen::Index joint, const Eigen::VectorXd& load);
 
 /// Root mean square of one joint's column over the reference motion.
 double rms(const Eigen::VectorXd& column);

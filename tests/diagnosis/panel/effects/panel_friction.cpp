@@ -100,9 +100,7 @@ DrawnEffect presliding(const EffectDraw& of, Eigen::Index joint) {
     const double bend = of.draw.log_uniform(0.03, 0.2);
     DrawnEffect effect;
     effect.hide = [joint, inertia, bend](double size, Scenario& scenario) {
-        LuGreParameters& friction = friction_of(scenario, joint);
-        friction.coulomb = friction.breakaway = size;
-        add_bristles(friction, size, bend, inertia);
+        add_dry_friction(scenario, joint, size, bend, inertia);
     };
     effect.parameters = [bend](double size) {
         return EffectParameters{{"break_away", size}, {"stiffness", size / bend}};
@@ -142,6 +140,12 @@ DrawnEffect drift(const EffectDraw& of, Eigen::Index joint) {
 
 void add_bristles(LuGreParameters& friction, double level, double bend, double inertia, double fastest) {
     friction.stiffness = std::min(level / bend, inertia * fastest * fastest);
+}
+
+void add_dry_friction(Scenario& scenario, Eigen::Index joint, double level, double bend, double inertia) {
+    LuGreParameters& friction = friction_of(scenario, joint);
+    friction.coulomb = friction.breakaway = level;
+    add_bristles(friction, level, bend, inertia);
 }
 
 namespace {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace dfdyn::tests {
 
@@ -18,28 +17,18 @@ constexpr double contact_frequency = 1000; // rad/s, of the rotor on closed teet
 constexpr double slowest_frequency = 25;   // rad/s, of the arm on a soft gear
 constexpr double gear_integration_rate_hz = 4000;
 
-/// Inertias of a joint during the reference motion, with the other joints free and held.
-struct JointInertia {
-    double least_free = std::numeric_limits<double>::infinity();
-    Eigen::VectorXd mean_held; ///< of all joints
-};
-
-JointInertia joint_inertia(const PanelSetup& setup, Eigen::Index joint) {
+/// Returns the mean inertias of all joints during the reference motion, each with the others held.
+Eigen::VectorXd mean_inertia(const PanelSetup& setup) {
     const ArmDynamics dynamics(setup.robot, JointVector::Zero(setup.joints()));
     ArmDynamics::Configuration configuration;
-    JointInertia result;
-    result.mean_held = Eigen::VectorXd::Zero(setup.joints());
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(setup.joints());
     double count = 0;
     for (Eigen::Index row = 0; row < setup.reference.position.rows(); row += 50) {
         dynamics.configure(setup.reference.position.row(row).transpose(), configuration);
-        const JointMatrix mass = dynamics.mass_matrix(configuration);
-        const JointMatrix inverse = mass.inverse();
-        result.least_free = std::min(result.least_free, 1 / inverse(joint, joint));
-        result.mean_held += mass.diagonal();
+        sum += dynamics.mass_matrix(configuration).diagonal();
         ++count;
     }
-    result.mean_held /= count;
-    return result;
+    return sum / count;
 }
 
 /// Subtracts the rotor from the link, so that the arm with a rigid gear is the nominal one.
@@ -48,10 +37,10 @@ void take_rotor_out(RobotJoint& joint, double rotor) {
 }
 
 /// Tunes the feedback of a motor with a soft gear for its rotor instead of the arm.
-void retune(Scenario& scenario, const JointInertia& inertia, Eigen::Index joint, double rotor) {
+void retune(Scenario& scenario, const Eigen::VectorXd& inertia, Eigen::Index joint, double rotor) {
     ControllerModel& controller = scenario.controller;
     controller.kind = ControllerKind::feed_forward;
-    controller.velocity_gain = 14 * inertia.mean_held;
+    controller.velocity_gain = 14 * inertia;
     controller.position_gain = 7 * controller.velocity_gain;
     // A light rotor needs a fast drive: otherwise the link's weight turns it over.
     controller.rate_hz = scenario.encoders.rate_hz = 2000;
@@ -63,7 +52,7 @@ void retune(Scenario& scenario, const JointInertia& inertia, Eigen::Index joint,
 }
 
 struct Gear {
-    JointInertia inertia;
+    Eigen::VectorXd inertia; ///< mean of each joint during the reference motion, kg·m²
     Eigen::Index joint;
     double rotor;
 };
@@ -93,19 +82,13 @@ DrawnEffect play_of_gear(const EffectDraw& of, const Gear& gear) {
     const Eigen::Index joint = gear.joint;
     const double stiffness = gear.rotor * contact_frequency * contact_frequency;
     const double damping = 0.6 * gear.rotor * contact_frequency;
-    const Eigen::VectorXd torque = joint_torque(of.setup, joint);
     DrawnEffect effect;
     effect.hide = [gear, stiffness, damping](double size, Scenario& scenario) {
         soften(scenario, gear, stiffness, damping, size);
     };
     effect.parameters = [](double size) { return EffectParameters{{"gap", size}}; };
-    if (turning_share(torque) > 0.1) {
-        constexpr double small = 1e-3;
-        MotionRows real = of.setup.reference;
-        real.position.col(joint) -= small / 2 * torque.cwiseSign();
-        // The impact of the link at the end of the gap adds to the effect of the angle.
-        effect.guess = std::min(0.03, small * of.strength / strength_along_reference(of.setup, real));
-    }
+    // The impact of the link at the end of the gap adds to the effect of the angle.
+    effect.guess = guess_of_gap(of, joint, joint_torque(of.setup, joint));
     effect.largest = 0.15;
     return effect;
 }
@@ -125,16 +108,15 @@ DrawnEffect flexibility(const EffectDraw& of, const Gear& gear) {
     real.position.col(joint) -= small * torque;
     real.acceleration.col(joint) -= small * second_derivative(torque, 0.02);
     effect.guess = small * of.strength / strength_along_reference(of.setup, real);
-    effect.largest = 1 / (gear.inertia.mean_held[joint] * slowest_frequency * slowest_frequency);
+    effect.largest = 1 / (gear.inertia[joint] * slowest_frequency * slowest_frequency);
     return effect;
 }
 
 DrawnEffect with_gear(const EffectDraw& of, DrawnEffect (*draw)(const EffectDraw&, const Gear&)) {
     const Eigen::Index joint = of.joint();
     const auto link = static_cast<std::size_t>(joint);
-    const JointInertia inertia = joint_inertia(of.setup, joint);
-    const double rotor = rotor_share * inertia.least_free;
-    const Gear gear{inertia, joint, rotor};
+    const double rotor = rotor_share * least_inertia(of.setup, joint);
+    const Gear gear{mean_inertia(of.setup), joint, rotor};
     DrawnEffect effect = draw(of, gear);
     effect.where = joint_place(joint);
     effect.soft = true;
@@ -144,6 +126,17 @@ DrawnEffect with_gear(const EffectDraw& of, DrawnEffect (*draw)(const EffectDraw
 }
 
 } // namespace
+
+double guess_of_gap(const EffectDraw& of, Eigen::Index joint, const Eigen::VectorXd& load) {
+    constexpr double small = 1e-3;
+    const double up = (load.array() > 0).cast<double>().mean(); // share of the time
+    if (std::min(up, 1 - up) <= 0.1) {
+        return 0;
+    }
+    MotionRows real = of.setup.reference;
+    real.position.col(joint) -= small / 2 * load.cwiseSign();
+    return std::min(0.03, small * of.strength / strength_along_reference(of.setup, real));
+}
 
 namespace hidden_effects {
 

@@ -47,23 +47,13 @@ void GreasedGear::take_apart(double gap, PanelRun& run) const {
     }
 }
 
-/// Size with the wanted strength if the link is always on the flank of its load.
-double guess_of_gap(const EffectDraw& of, Eigen::Index joint, const Eigen::VectorXd& load) {
-    constexpr double small = 1e-3;
-    MotionRows real = of.setup.reference;
-    if (turning_share(load) < 0.1) {
-        return 0;
-    }
-    real.position.col(joint) -= small / 2 * load.cwiseSign();
-    const double strength = strength_along_reference(of.setup, real);
-    return strength > 1e-9 ? std::min(0.03, small * of.strength / strength) : 0;
-}
-
 } // namespace
+
+namespace hidden_effects {
 
 /// In half of the cases dry friction at the link, which shows in the torque, decides with the load on which
 /// flank the link is.
-DrawnEffect hidden_effects::greased_backlash(const EffectDraw& of) {
+DrawnEffect greased_backlash(const EffectDraw& of) {
     const Eigen::Index joint = of.joint();
     const bool rubs = !of.setup.wrench() && of.draw.chance(0.5);
     const double share = of.draw.uniform(0.3, 1);
@@ -84,12 +74,10 @@ DrawnEffect hidden_effects::greased_backlash(const EffectDraw& of) {
     Eigen::VectorXd load = torque;
     effect.hide = [](double, Scenario&) {};
     if (rubs) {
-        const double level = share * rms(torque);
+        const double level = share * gear.load;
         effect.companion = HiddenEffect{"coulomb_friction", effect.where, {{"coulomb", level}}, "", 0};
         effect.hide = [joint, level, inertia = least_inertia(of.setup, joint)](double, Scenario& scenario) {
-            LuGreParameters& friction = scenario.actuators.friction[static_cast<std::size_t>(joint)];
-            friction.coulomb = friction.breakaway = level;
-            add_bristles(friction, level, stiff_bend, inertia);
+            add_dry_friction(scenario, joint, level, stiff_bend, inertia);
         };
         effect.drifting_joint = joint;
         effect.drifting = [](double, double, double friction) { return friction; };
@@ -99,5 +87,7 @@ DrawnEffect hidden_effects::greased_backlash(const EffectDraw& of) {
     effect.guess = guess_of_gap(of, joint, load);
     return effect;
 }
+
+} // namespace hidden_effects
 
 } // namespace dfdyn::tests
