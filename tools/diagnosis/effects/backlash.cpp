@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace dfdyn::tools {
 
@@ -59,9 +58,11 @@ std::string family_of(std::size_t joint) { return "backlash at " + numbered("joi
 
 /// How a link changes flanks without an impact. Loads are relative to the rms of the rigid body's torque.
 struct Greased {
-    double friction; ///< dry friction at the link
-    double wide;   ///< of a soft gear: load that holds the link at three quarters of its travel. 0: of grease
-    double time_s; ///< lag of the soft gear, or time in which a load of 1 moves the link through the grease
+    double friction = 0; ///< dry friction at the link
+    double wide =
+        0; ///< of a soft gear: load that holds the link at three quarters of its travel. 0: of grease
+    double time_s =
+        0; ///< lag of the soft gear, or time in which a load of 1 moves the link through the grease
 };
 
 /// Displacement (T) of a link that follows its load from flank to flank, per gap.
@@ -140,7 +141,6 @@ Candidate greased_candidate(const DiagnosisSignals& signals, std::size_t joint,
 constexpr double narrowest_gap = 5e-4; // rad
 constexpr double widest_gap = 0.1;
 constexpr double gap_ratio = 1.5; // from one gap to the next
-constexpr double fall_gaps = 14;  // courses with impacts of each joint
 
 /// Searches, for each joint, for the course that correlates best with the residual.
 class BacklashScan : public EffectScan {
@@ -150,47 +150,46 @@ class BacklashScan : public EffectScan {
 
   private:
     struct Course {
-        std::size_t joint = 0;
-        double gap = 0;              ///< with impacts
-        std::optional<Greased> gear; ///< without impacts
-        Eigen::MatrixXd series;      ///< T x m
-        Eigen::MatrixXd power;       ///< bins x m: sums of squares
+        double gap = 0;             ///< of a course with impacts
+        Greased gear;               ///< of a course without
+        Eigen::MatrixXd series;     ///< T x m
+        Eigen::MatrixXd power = {}; ///< bins x m: sums of squares
     };
     struct Best {
-        const Course* course = nullptr;
-        double gain = 0; ///< twice the log-evidence of its column alone
+        const Course* course = nullptr; ///< null: none correlates
+        double gain = 0;                ///< twice the log-evidence of its column alone
     };
-    void add(const SpectralRows& rows, Course course);
-    Best best(const FittedResidual& residual, std::size_t joint, bool impacts) const;
+    struct Joint {
+        std::vector<Course> impacts, greased;
+    };
+    static Best best(const FittedResidual& residual, const std::vector<Course>& courses);
 
-    std::vector<Course> courses_;
+    std::vector<Joint> joints_;
 };
 
-BacklashScan::BacklashScan(const DiagnosisSignals& signals, const SpectralRows& rows) {
-    for (std::size_t joint = 0; joint < signals.joints(); ++joint) {
+BacklashScan::BacklashScan(const DiagnosisSignals& signals, const SpectralRows& rows)
+    : joints_(signals.joints()) {
+    const auto with_power = [&](Course course) {
+        course.power.resize(rows.bins(), signals.outputs());
+        for (Eigen::Index output = 0; output < signals.outputs(); ++output) {
+            course.power.col(output) =
+                rows.analyse(course.series.col(output), output).rowwise().squaredNorm();
+        }
+        return course;
+    };
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
         for (double gap = narrowest_gap; gap < widest_gap; gap *= gap_ratio) {
-            add(rows, {joint, gap, {}, play_course(signals, joint, gap), {}});
+            joints_[joint].impacts.push_back(with_power({gap, {}, play_course(signals, joint, gap)}));
         }
         for (const Greased& gear : all_greased()) {
-            add(rows, {joint, 0, gear, greased_course(signals, joint, gear), {}});
+            joints_[joint].greased.push_back(with_power({0, gear, greased_course(signals, joint, gear)}));
         }
     }
 }
 
-void BacklashScan::add(const SpectralRows& rows, Course course) {
-    course.power.resize(rows.bins(), course.series.cols());
-    for (Eigen::Index output = 0; output < course.series.cols(); ++output) {
-        course.power.col(output) = rows.analyse(course.series.col(output), output).rowwise().squaredNorm();
-    }
-    courses_.push_back(std::move(course));
-}
-
-BacklashScan::Best BacklashScan::best(const FittedResidual& residual, std::size_t joint, bool impacts) const {
+BacklashScan::Best BacklashScan::best(const FittedResidual& residual, const std::vector<Course>& courses) {
     Best best;
-    for (const Course& course : courses_) {
-        if (course.joint != joint || course.gear.has_value() == impacts) {
-            continue;
-        }
+    for (const Course& course : courses) {
         const double product = residual.weighted.cwiseProduct(course.series).sum();
         const double energy = course.power.cwiseQuotient(residual.regression.noise()).sum();
         const double gain = product > 0 && energy > 0 ? product * product / energy : 0;
@@ -205,11 +204,11 @@ BacklashScan::Best BacklashScan::best(const FittedResidual& residual, std::size_
 std::vector<Candidate> BacklashScan::candidates(const FittedResidual& residual) const {
     constexpr double clearly = 20; // of gain
     std::vector<Candidate> result;
-    for (std::size_t joint = 0; joint < residual.signals.joints(); ++joint) {
-        const Best impact = best(residual, joint, true);
-        const Best greased = best(residual, joint, false);
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+        const Best impact = best(residual, joints_[joint].impacts);
+        const Best greased = best(residual, joints_[joint].greased);
         if (greased.gain > impact.gain + clearly) {
-            result.push_back(greased_candidate(residual.signals, joint, near(*greased.course->gear)));
+            result.push_back(greased_candidate(residual.signals, joint, near(greased.course->gear)));
         } else if (impact.course != nullptr) {
             const double found = impact.course->gap;
             result.push_back(
@@ -217,7 +216,7 @@ std::vector<Candidate> BacklashScan::candidates(const FittedResidual& residual) 
         } else {
             continue;
         }
-        result.back().tried = fall_gaps / 3;
+        result.back().tried = static_cast<double>(joints_[joint].impacts.size()) / 3;
     }
     return result;
 }
@@ -244,8 +243,7 @@ Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
         result.columns.push_back(on_outputs(play_course(signals, joint, gap)));
     }
     // The gap follows from the course, that is, from the duration of the fall. The coefficient only describes
-    // how hard the link is caught.
-    // If the link was caught more softly, as in grease, the coefficient is the gap.
+    // how hard the link is caught. Without an impact, as in grease, it would be the gap.
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
         EffectParameter gap = backlash_gap.at(shape.value);
         const double softer = std::max(0.0, 1 - coefficients[0] / shape.value);
