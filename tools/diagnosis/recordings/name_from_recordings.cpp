@@ -113,12 +113,12 @@ class TermNamer {
         finding.effect = effect.name;
         finding.where = numbered("joint", joint);
         finding.spread = fit().spread[at];
-        finding.parameters = {
-            parameter_within(kind.name, kind.unit, value, std::hypot(deviation, finding.spread))};
-        finding.confidence = probability_of_size(value, std::hypot(deviation, finding.spread));
-        if (!effect.friction && everywhere_ && std::abs(value) < std::hypot(deviation, finding.spread)) {
+        const double of_recording = std::hypot(deviation, finding.spread);
+        if (!effect.friction && everywhere_ && std::abs(value) < of_recording) {
             return; // noise
         }
+        finding.parameters = {parameter_within(kind.name, kind.unit, value, of_recording)};
+        finding.confidence = probability_of_size(value, of_recording);
         if (!effect.friction && std::abs(value) < clear * deviation) {
             finding.confidence = std::min(finding.confidence, unlikely);
         }

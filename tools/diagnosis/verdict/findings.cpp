@@ -179,13 +179,13 @@ void add_push(std::vector<Finding>& findings, Finding push) {
 /// Returns whether the only size of a finding has an interval that contains the value without the effect.
 bool may_be_none(const Finding& finding) {
     const Effect& effect = effect_named(finding.effect);
-    const std::optional<double> none = effect.parameters.front().null_value;
-    if (finding.parameters.empty()) {
+    const bool one_size = effect.textbook || effect.parameters.size() == 1;
+    if (!one_size || finding.parameters.empty()) {
         return false;
     }
+    const std::optional<double> none = effect.parameters.front().null_value;
     const FoundParameter& size = finding.parameters.front();
-    const bool only_size = effect.textbook || effect.parameters.size() == 1;
-    return only_size && none && size.low < size.high && size.low <= *none && *none <= size.high;
+    return none && size.low < size.high && size.low <= *none && *none <= size.high;
 }
 
 } // namespace
