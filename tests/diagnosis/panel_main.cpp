@@ -156,13 +156,13 @@ CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
     return command;
 }
 
-void add_mix(CLI::App& command, PanelOptions& options) {
+void add_mix(CLI::App& command, PanelOptions& options, const std::vector<std::string>& robots,
+             const std::string& robot_help) {
     add_seeds(command, options);
     command.add_option("--effect", options.mix.effect, "Always this effect");
     command.add_option("--strength", options.mix.strength, "Always this strength")
         ->check(CLI::PositiveNumber);
-    command.add_option("--robot", options.mix.robot, "Always this arm")
-        ->check(CLI::IsMember(panel_robot_names()));
+    command.add_option("--robot", options.mix.robot, robot_help)->check(CLI::IsMember(robots));
     command.add_option("--noise", options.mix.noise, "Always this noise")
         ->check(CLI::IsMember(panel_noise_names()));
     command.add_option("--masses-off", options.mix.masses_off, "Nominal masses wrong: 0 never, 1 always");
@@ -180,10 +180,13 @@ int run(int argc, char** argv) {
     PanelOptions options;
     CLI::App* generating = app.add_subcommand(
         "generate", "Writes caseNNNN.csv, the recording, and caseNNNN.truth.json, the answer");
-    add_mix(*generating, options);
+    add_mix(*generating, options, panel_robot_names(), "Always this arm");
     generating->add_option("-o,--output", options.directory, "Folder")->required();
     CLI::App* scoring = app.add_subcommand("score", "Diagnoses the cases and prints the results as tables");
-    add_mix(*scoring, options);
+    std::vector<std::string> robots = panel_robot_names();
+    robots.emplace_back(unknown_arm); // has no file that could be written
+    add_mix(*scoring, options, robots,
+            "Always this arm. unknown_arm: each case has another arm, motion and recording");
     scoring->add_option("--threads", options.threads, "Cases in parallel")->check(CLI::Range(1, 64));
     add_tables(*scoring, options);
     scoring->add_flag("--hold", options.hold,

@@ -107,27 +107,23 @@ DrawnEffect link_moments(const EffectDraw& of, std::size_t link) {
     return effect;
 }
 
-/// Draws a link with mass from `least` on that is beyond the F/T sensor if there is one.
-std::size_t draw_link(const EffectDraw& of, std::size_t least) {
+/// Gives an effect to a link from `least` on. With an F/T sensor the whole link is beyond it; if there is
+/// none, the effect has no size.
+DrawnEffect at_link(const EffectDraw& of, std::size_t least,
+                    DrawnEffect (*draw)(const EffectDraw&, std::size_t link)) {
     const Robot& robot = of.setup.robot;
     const std::size_t first = of.setup.wrench() ? std::max(robot.sensor->link, least) : least;
-    return first + of.draw.below(robot.joints.size() - first);
-}
-
-DrawnEffect at_link(std::size_t link, DrawnEffect effect) {
+    if (first >= robot.joints.size()) {
+        return {};
+    }
+    const std::size_t link = first + of.draw.below(robot.joints.size() - first);
+    DrawnEffect effect = draw(of, link);
     effect.where = "link" + std::to_string(link + 1);
     return effect;
 }
 
-DrawnEffect link_error(const EffectDraw& of) {
-    const std::size_t link = draw_link(of, 0);
-    return at_link(link, of.draw.chance(0.5) ? link_mass(of, link) : link_centre(of, link));
-}
-
-/// The first link's inertia is that of its joint's rotor as well.
-DrawnEffect link_rotation(const EffectDraw& of) {
-    const std::size_t link = draw_link(of, 1);
-    return at_link(link, link_moments(of, link));
+DrawnEffect mass_or_centre(const EffectDraw& of, std::size_t link) {
+    return of.draw.chance(0.5) ? link_mass(of, link) : link_centre(of, link);
 }
 
 DrawnEffect tilt(const EffectDraw& of) {
@@ -190,8 +186,9 @@ DrawnEffect at_encoder(const EffectDraw& of, DrawnEffect (*draw)(const EffectDra
 namespace hidden_effects {
 
 DrawnEffect payload(const EffectDraw& of) { return mass_at_tool(of); }
-DrawnEffect link_inertia_error(const EffectDraw& of) { return link_error(of); }
-DrawnEffect link_rotational_inertia_error(const EffectDraw& of) { return link_rotation(of); }
+DrawnEffect link_inertia_error(const EffectDraw& of) { return at_link(of, 0, mass_or_centre); }
+/// The first link's inertia is that of its joint's rotor as well.
+DrawnEffect link_rotational_inertia_error(const EffectDraw& of) { return at_link(of, 1, link_moments); }
 DrawnEffect gravity_tilt(const EffectDraw& of) { return tilt(of); }
 DrawnEffect encoder_offset(const EffectDraw& of) { return at_encoder(of, shifted_zero); }
 DrawnEffect encoder_eccentricity(const EffectDraw& of) { return at_encoder(of, eccentricity); }

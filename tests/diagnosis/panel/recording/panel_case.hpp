@@ -66,7 +66,11 @@ struct PanelMix {
     std::optional<double> duration_s; ///< of every recording; 40 to 60 s if not set
 };
 
-/// Valid names for PanelMix::robot and PanelMix::noise.
+/// PanelMix::robot of an arm that is drawn at random, with its motion, noise, rate and duration. Only on
+/// request.
+inline constexpr const char* unknown_arm = "unknown_arm";
+
+/// Valid names for PanelMix::robot, besides `unknown_arm`, and for PanelMix::noise.
 std::vector<std::string> panel_robot_names();
 std::vector<std::string> panel_noise_names();
 

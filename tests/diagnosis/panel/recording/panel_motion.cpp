@@ -94,9 +94,32 @@ PointToPointTask random_postures(const PanelRobot& kind, const Robot& robot, dou
     return task;
 }
 
+/// A few postures, again and again, or one joint after another out of one posture.
+PointToPointTask repeated_postures(const PanelRobot& kind, const Robot& robot, bool one_by_one, Draw& draw) {
+    PointToPointTask task = random_postures(kind, robot, 10, draw);
+    task.dwell_s = draw.log_uniform(0.2, 3);
+    if (!one_by_one) {
+        task.postures.resize(static_cast<std::size_t>(draw.whole(3, 6)), task.postures.front());
+        return task;
+    }
+    const JointVector centre = task.postures[0];
+    const JointVector other = task.postures[1];
+    task.postures.clear();
+    for (Eigen::Index joint = 0; joint < centre.size(); ++joint) {
+        JointVector moved = centre;
+        moved[joint] = other[joint];
+        task.postures.push_back(centre);
+        task.postures.push_back(moved);
+    }
+    return task;
+}
+
 } // namespace
 
 TaskModel random_task(const PanelRobot& kind, const Robot& robot, double duration_s, Draw& draw) {
+    if (kind.conditions.everyday_motion && draw.chance(0.4)) {
+        return repeated_postures(kind, robot, draw.chance(0.4), draw);
+    }
     if (draw.chance(0.3)) {
         return random_postures(kind, robot, duration_s, draw);
     }

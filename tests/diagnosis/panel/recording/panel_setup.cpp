@@ -6,6 +6,7 @@
 #include "tools/robot/dynamics/arm_dynamics.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace dfdyn::tests {
 
@@ -26,7 +27,7 @@ Scenario base_scenario(const PanelRobot& kind, const Robot& robot, double durati
     Scenario scenario;
     scenario.seed = draw.seed();
     scenario.integration_rate_hz = integration_rate_hz;
-    scenario.recording.rate_hz = draw.of(std::vector<double>{100, 125, 200, 250});
+    scenario.recording.rate_hz = draw.of(kind.conditions.rates_hz);
     scenario.recording.samples = static_cast<std::size_t>(duration_s * scenario.recording.rate_hz);
     scenario.task = random_task(kind, robot, duration_s, draw);
     scenario.controller.rate_hz = 500;
@@ -38,7 +39,7 @@ Scenario base_scenario(const PanelRobot& kind, const Robot& robot, double durati
     scenario.torque_sensor.noise = zeros(robot);
     scenario.encoders.eccentricity = zeros(robot);
     scenario.encoders.eccentricity_phase = zeros(robot);
-    scenario.encoders.bits_per_turn = draw.whole(14, 20);
+    scenario.encoders.bits_per_turn = draw.whole(kind.conditions.least_bits, kind.conditions.most_bits);
     scenario.derivatives.rate_hz = 10; // the derivatives of the simulation are not used
     scenario.derivatives.velocity_window = 40;
     scenario.derivatives.acceleration_window = 40;
@@ -98,7 +99,7 @@ void add_noise(PanelSetup& setup, Draw& draw) {
     OutputNoise noise(unit_noise(setup.noise, setup.joints(), draw), draw.seed());
     setup.noise_rms = sizes(setup);
     for (double& rms : setup.noise_rms) {
-        rms *= draw.uniform(0.01, 0.05);
+        rms *= draw.uniform(setup.kind.conditions.least_noise, setup.kind.conditions.largest_noise);
     }
     const auto rows = static_cast<Eigen::Index>(setup.scenario.recording.samples);
     setup.noise_rows.resize(rows, setup.noise_rms.size());
@@ -125,6 +126,17 @@ void mistake_masses(PanelSetup& setup, const PanelMix& mix, Draw draw) {
     }
 }
 
+void choose_arm(PanelSetup& setup, std::uint64_t seed, const std::string& name) {
+    if (name == unknown_arm) {
+        UnknownArm arm = draw_unknown_arm(seed);
+        setup.kind = std::move(arm.kind);
+        setup.robot = std::move(arm.robot);
+        return;
+    }
+    setup.kind = panel_robot(name);
+    setup.robot = read_panel_robot(setup.kind);
+}
+
 } // namespace
 
 std::vector<std::string> panel_noise_names() { return {"white", "ar1_0.9", "ar1_0.98", "resampled"}; }
@@ -139,17 +151,17 @@ PanelSetup make_panel_setup(std::uint64_t seed, const PanelMix& mix) {
     // Drawn even if given, so that all other draws are unchanged.
     const std::string robot = draw.of(panel_robot_names());
     const std::string noise = draw.of(panel_noise_names());
-    setup.kind = panel_robot(mix.robot.value_or(robot));
     setup.noise = mix.noise.value_or(noise);
-    setup.robot = read_panel_robot(setup.kind);
+    choose_arm(setup, seed, mix.robot.value_or(robot));
+    const PanelConditions& conditions = setup.kind.conditions;
     mistake_masses(setup, mix, Draw(seed, 2));
-    const double duration_s = draw.uniform(40, 60);
+    const double duration_s = draw.uniform(conditions.shortest_s, conditions.longest_s);
     setup.duration_s = mix.duration_s.value_or(duration_s);
     setup.scenario = base_scenario(setup.kind, setup.robot, setup.duration_s, draw);
     setup.torque_constants = Eigen::VectorXd::Ones(setup.joints());
     if (setup.kind.outputs == OutputKind::motor_current) {
         for (double& constant : setup.torque_constants) {
-            constant = draw.uniform(7, 14);
+            constant = draw.uniform(conditions.least_constant, conditions.largest_constant);
         }
         setup.constants_known = draw.chance(mix.known_constants_share);
     }

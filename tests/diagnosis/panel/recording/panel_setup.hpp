@@ -12,17 +12,35 @@ namespace dfdyn::tests {
 /// Relative, of a link's mass, in recordings with wrong masses.
 inline constexpr double largest_mass_error = 0.1;
 
+/// Ranges of the random properties of a recording.
+struct PanelConditions {
+    std::vector<double> rates_hz = {100, 125, 200, 250};
+    int least_bits = 14, most_bits = 20;              ///< of an encoder, per turn
+    double least_noise = 0.01, largest_noise = 0.05;  ///< rms, per rms of the output
+    double shortest_s = 40, longest_s = 60;           ///< durations
+    double least_constant = 7, largest_constant = 14; ///< torque constants, N·m/A
+    bool everyday_motion = false;                     ///< also few postures, and one joint after another
+};
+
 /// An arm of the panel with one kind of outputs.
 struct PanelRobot {
     std::string name, urdf, tip;
-    tools::OutputKind outputs;
-    double speed;         ///< rad/s, maximum of its joints
-    double largest_range; ///< rad, maximum excursion of a joint on either side of its centre
+    tools::OutputKind outputs = tools::OutputKind::joint_torque;
+    double speed = 0;         ///< rad/s, maximum of its joints
+    double largest_range = 0; ///< rad, maximum excursion of a joint on either side of its centre
+    PanelConditions conditions = {};
 };
 
 const std::vector<PanelRobot>& panel_robots();
 const PanelRobot& panel_robot(const std::string& name);
 tools::Robot read_panel_robot(const PanelRobot& robot);
+
+/// An arm that is different for every seed.
+struct UnknownArm {
+    PanelRobot kind;
+    tools::Robot robot;
+};
+UnknownArm draw_unknown_arm(std::uint64_t seed);
 
 /// Joint motion or outputs with one row per sample.
 struct MotionRows {

@@ -124,6 +124,11 @@ CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagno
     for (const tools::Finding& finding : diagnosis.findings) {
         score.findings.push_back(score_finding(panel_case, finding));
     }
+    for (const tools::Suspicion& suspicion : diagnosis.suspicions) {
+        if (!suspicion.code.empty()) {
+            score.refusals.push_back(suspicion.code);
+        }
+    }
     score.constants = score_constants(panel_case, diagnosis);
     if (is_exact(panel_case)) {
         score.harm = harm_of(diagnosis);
@@ -163,13 +168,16 @@ std::string describe(const CaseScore& score) {
         text += part.data();
     }
     text += " ||";
+    for (const std::string& code : score.refusals) {
+        text += " refused: " + code;
+    }
     for (const FindingScore& finding : score.findings) {
-        std::snprintf(part.data(), part.size(), " %s%s@%s(%.1f/%.1f,%zu)",
+        std::snprintf(part.data(), part.size(), " %s%s@%s %.2f (%.1f/%.1f,%zu)",
                       finding.own_name ? ""
                       : finding.right  ? "~"
                                        : "!",
-                      finding.effect.c_str(), finding.where.c_str(), finding.margin_to_nothing,
-                      finding.margin_to_others, finding.ties);
+                      finding.effect.c_str(), finding.where.c_str(), finding.confidence,
+                      finding.margin_to_nothing, finding.margin_to_others, finding.ties);
         text += part.data();
     }
     std::snprintf(part.data(), part.size(), "  [%.1fs]", score.seconds);

@@ -46,6 +46,7 @@ struct CaseScore {
     bool masses_off = false, outside = false;
     std::vector<EffectScore> effects;
     std::vector<FindingScore> findings;
+    std::vector<std::string> refusals; ///< codes, if the set-up or the recording is refused
     std::vector<ConstantScore> constants;
     /// Relative increase of the held-out error over all outputs by the causes found. Set only for recordings
     /// without any effect, with exact masses and known constants.

@@ -93,6 +93,8 @@ std::vector<Line> lines_of(const PanelSummary& summary) {
         {"recordings without any effect that have a finding at 0.5 or more", summary.null_with_finding, 0.05,
          0.05, 0.03, false},
         {"findings at 0.9 or more that are wrong", summary.confident_and_wrong, 0.05, 0.05, 0.05, false},
+        {"recordings that are refused although the set-up is right", summary.refused, 0.02, 0.05, 0.02,
+         false},
         {"two effects at once, both of strength 1 and more: both named", summary.both_named, 0.85, 0.6, 0.85},
         {"two effects at once, one or both at 0.3: both named", summary.both_named_with_weak, 0.85, 0, 0.5},
         {"effects outside the catalogue, strength 1 and more: no wrong name, right output and input",
@@ -235,6 +237,7 @@ PanelSummary summarise(const std::vector<CaseScore>& scores) {
             ++summary.exact;
             summary.mean_harm += (*score.harm - summary.mean_harm) / summary.exact;
         }
+        summary.refused.add(!score.refusals.empty());
         if (score.effects.empty()) {
             summary.null_with_finding.add(any_name(score));
         } else if (score.outside) {

@@ -30,6 +30,7 @@ struct PanelSummary {
     Rate null_with_finding; ///< confidence of at least 0.5; a wrong link mass that is really wrong counts too
     int exact = 0;          ///< recordings that differ from the model by noise only
     double mean_harm = 0;   ///< mean of CaseScore::harm over these
+    Rate refused;           ///< of all recordings; the set-up is always right
     Rate confident_and_wrong;              ///< among all findings with a confidence of at least 0.9
     Rate both_named, both_named_with_weak; ///< both of strength 1 or more; at least one weaker
     /// no wrong name at 0.5 or more, and the right output and input reported as unexplained; for strengths of
