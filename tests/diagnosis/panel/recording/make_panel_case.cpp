@@ -13,7 +13,6 @@ using namespace tools;
 
 namespace {
 
-constexpr int most_redraws = 200;
 const std::vector<double> strengths_drawn{0.3, 1, 3, 10};
 
 enum class Kind { null, one, two, outside };
@@ -36,7 +35,8 @@ Kind draw_kind(const PanelMix& mix, Draw& draw) {
 std::vector<std::string> candidates(const PanelSetup& setup, Kind kind) {
     std::vector<std::string> names;
     for (const std::string& name : kind == Kind::outside ? outside_effect_names() : panel_effect_names()) {
-        if (shows(name, setup.kind.outputs, setup.constants_known)) {
+        if (shows(name, setup.kind.outputs, setup.constants_known) &&
+            (setup.ordinary.empty() || fits_ordinary_gears(name))) {
             names.push_back(name);
         }
     }
@@ -47,7 +47,7 @@ std::vector<std::string> candidates(const PanelSetup& setup, Kind kind) {
 Fitted draw_fitted(const PanelSetup& setup, const std::vector<std::string>& names, const PanelMix& mix,
                    Draw& draw, PanelCase& result) {
     const double strength = mix.strength.value_or(draw.of(strengths_drawn));
-    for (int redraw = 0; redraw < most_redraws; ++redraw) {
+    for (int redraw = 0; redraw < setup.kind.conditions.most_redraws; ++redraw) {
         const std::string name = mix.effect.value_or(draw.of(names));
         const std::optional<DrawnEffect> effect = draw_effect(name, {setup, draw, strength});
         if (!effect) {
@@ -81,7 +81,7 @@ void describe(const PanelSetup& setup, const Fitted& fitted, PanelCase& result) 
 PanelRun draw_two(const PanelSetup& setup, const PanelMix& mix, Draw& draw, PanelCase& result) {
     const std::vector<std::string> names = candidates(setup, Kind::two);
     const Fitted first = draw_fitted(setup, names, mix, draw, result);
-    for (int redraw = 0; redraw < most_redraws; ++redraw) {
+    for (int redraw = 0; redraw < setup.kind.conditions.most_redraws; ++redraw) {
         const Fitted second = draw_fitted(setup, names, mix, draw, result);
         if (first.effect.effect == second.effect.effect || first.effect.where == second.effect.where) {
             ++result.redraws; // two kinds of friction on one joint could not be distinguished
@@ -97,12 +97,12 @@ PanelRun draw_two(const PanelSetup& setup, const PanelMix& mix, Draw& draw, Pane
             ++result.redraws;
         }
     }
-    throw InputError("expected two effects that can be there at once, found none");
+    throw ImpossibleCase("expected two effects that can be there at once, found none");
 }
 
 PanelRun draw_run(const PanelSetup& setup, const PanelMix& mix, Draw& draw, PanelCase& result) {
     Kind kind = draw_kind(mix, draw);
-    if (kind == Kind::outside && candidates(setup, kind).empty()) {
+    if (kind == Kind::outside && (candidates(setup, kind).empty() || !setup.ordinary.empty())) {
         kind = Kind::one;
     }
     if (kind == Kind::null) {
@@ -137,6 +137,7 @@ PanelCase make_panel_case(std::uint64_t seed, const PanelMix& mix) {
     result.masses_off = setup.masses_off;
     result.nominal = setup.nominal;
     result.mass_errors = setup.mass_errors;
+    result.ordinary = setup.ordinary;
     Draw effects(seed, 3);
     result.recording = recording_of(setup, draw_run(setup, mix, effects, result));
     return result;

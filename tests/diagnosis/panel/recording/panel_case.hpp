@@ -47,8 +47,10 @@ struct PanelCase {
     std::vector<double>
         torque_constants; ///< nominal values per joint, N·m/A; empty unless the outputs are currents
     std::vector<HiddenEffect> hidden; ///< first the effect that was requested
-    bool outside_catalogue = false;   ///< then `hidden` has no effect of the diagnosis's catalogue
-    int redraws = 0;                  ///< number of effects that could not reach the wanted strength
+    /// Friction and rotors of all joints, which no test requires to be named; each name of them is right.
+    std::vector<HiddenEffect> ordinary;
+    bool outside_catalogue = false; ///< then `hidden` has no effect of the diagnosis's catalogue
+    int redraws = 0;                ///< number of effects that could not reach the wanted strength
     int simulations = 0;
 };
 

@@ -80,7 +80,11 @@ MotionRows from_rows(const MotionRows& shown, double rate_hz) {
 Eigen::MatrixXd unexplained(const PanelSetup& setup, const PanelRun& run, const DrawnEffect& effect) {
     const MotionRows motion =
         effect.soft ? from_rows(run.shown, setup.scenario.recording.rate_hz) : run.shown;
-    return run.output - rigid_outputs(setup, setup.robot, motion);
+    Eigen::MatrixXd rest = run.output - rigid_outputs(setup, setup.robot, motion);
+    if (setup.ordinary_outputs.size() > 0) {
+        rest -= setup.ordinary_outputs;
+    }
+    return rest;
 }
 
 Columns columns(std::vector<std::string> names, const Eigen::MatrixXd& rows) {

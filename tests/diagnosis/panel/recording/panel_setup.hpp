@@ -19,7 +19,9 @@ struct PanelConditions {
     double least_noise = 0.01, largest_noise = 0.05;  ///< rms, per rms of the output
     double shortest_s = 40, longest_s = 60;           ///< durations
     double least_constant = 7, largest_constant = 14; ///< torque constants, N·m/A
-    bool everyday_motion = false;                     ///< also few postures, and one joint after another
+    int most_redraws = 200;                           ///< of effects that cannot have the wanted strength
+    double ordinary_share = 0;    ///< of the arms of which all joints have friction and rotors
+    bool everyday_motion = false; ///< also few postures, and one joint after another
 };
 
 /// An arm of the panel with one kind of outputs.
@@ -63,12 +65,18 @@ struct PanelSetup {
     Eigen::MatrixXd noise_rows; ///< in the units of the recording
     Eigen::VectorXd noise_rms, noise_in_band;
     double duration_s = 0;
+    std::vector<HiddenEffect> ordinary; ///< friction and rotors of all joints, or none
+    Eigen::MatrixXd ordinary_outputs;   ///< their contribution to the outputs, or empty
 
     Eigen::Index outputs() const { return noise_rms.size(); }
     Eigen::Index joints() const { return static_cast<Eigen::Index>(robot.joints.size()); }
     bool wrench() const { return kind.outputs == tools::OutputKind::wrench; }
     std::string output_name(Eigen::Index output) const;
 };
+
+/// Gives all joints friction and rotors. An effect of the gear itself cannot be hidden in addition.
+void add_ordinary_gears(PanelSetup& setup, Draw draw);
+bool fits_ordinary_gears(const std::string& effect);
 
 PanelSetup make_panel_setup(std::uint64_t seed, const PanelMix& mix);
 

@@ -173,11 +173,21 @@ PanelConditions unknown_conditions(Draw& draw) {
     conditions.least_noise = conditions.largest_noise / 5;
     conditions.shortest_s = 20;
     conditions.longest_s = 120;
-    const double constant = draw.log_uniform(0.3, 30);
-    conditions.least_constant = constant;
-    conditions.largest_constant = 2 * constant;
+    conditions.most_redraws = 10; // a slow arm with large noise shows no strong effect
+    conditions.ordinary_share = 0.6;
     conditions.everyday_motion = true;
     return conditions;
+}
+
+/// Torque of gravity on the stretched arm at half of its reach, N·m.
+double weight_torque(const Robot& robot) {
+    double mass = 0;
+    double reach = robot.tip_placement.translation().norm();
+    for (const RobotJoint& joint : robot.joints) {
+        mass += joint.inertia[0];
+        reach += joint.placement.translation().norm();
+    }
+    return gravity * mass * reach / 2;
 }
 
 } // namespace
@@ -192,6 +202,8 @@ UnknownArm draw_unknown_arm(std::uint64_t seed) {
     arm.kind.largest_range = draw.uniform(0.6, 2);
     arm.kind.conditions = unknown_conditions(draw);
     arm.robot = random_arm(arm.kind.outputs, draw);
+    arm.kind.conditions.least_constant = weight_torque(arm.robot) / draw.log_uniform(2, 20); // A
+    arm.kind.conditions.largest_constant = 2 * arm.kind.conditions.least_constant;
     return arm;
 }
 

@@ -70,20 +70,17 @@ EffectScore score_effect(const HiddenEffect& hidden, const tools::Diagnosis& dia
 }
 
 FindingScore score_finding(const PanelCase& panel_case, const tools::Finding& finding) {
-    FindingScore score{finding.effect,
-                       finding.where,
-                       finding.confidence,
-                       finding.margin_to_nothing,
-                       finding.margin_to_others,
-                       finding.indistinguishable.size(),
-                       false,
-                       false};
-    score.own_name = (panel_case.masses_off && finding.effect == "link_inertia_error") ||
-                     std::any_of(panel_case.hidden.begin(), panel_case.hidden.end(),
-                                 [&](const HiddenEffect& hidden) { return is(finding, hidden); });
-    score.right =
-        score.own_name || std::any_of(panel_case.hidden.begin(), panel_case.hidden.end(),
-                                      [&](const HiddenEffect& hidden) { return has(finding, hidden); });
+    FindingScore score{finding.effect,           finding.where,
+                       finding.confidence,       finding.margin_to_nothing,
+                       finding.margin_to_others, finding.indistinguishable.size()};
+    const auto any = [&](const std::vector<HiddenEffect>& effects, const auto& matches) {
+        return std::ranges::any_of(effects,
+                                   [&](const HiddenEffect& effect) { return matches(finding, effect); });
+    };
+    const bool wrong_link = panel_case.masses_off && finding.effect.starts_with("link_");
+    score.ordinary = any(panel_case.ordinary, is);
+    score.own_name = score.ordinary || wrong_link || any(panel_case.hidden, is);
+    score.right = score.own_name || any(panel_case.hidden, has) || any(panel_case.ordinary, has);
     return score;
 }
 
@@ -108,7 +105,8 @@ double harm_of(const tools::Diagnosis& diagnosis) {
 } // namespace
 
 bool is_exact(const PanelCase& panel_case) {
-    return panel_case.hidden.empty() && !panel_case.masses_off && panel_case.torque_constants_known;
+    return panel_case.hidden.empty() && panel_case.ordinary.empty() && !panel_case.masses_off &&
+           panel_case.torque_constants_known;
 }
 
 CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagnosis) {
@@ -126,7 +124,7 @@ CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagno
     }
     for (const tools::Suspicion& suspicion : diagnosis.suspicions) {
         if (!suspicion.code.empty()) {
-            score.refusals.push_back(suspicion.code);
+            score.refusals.push_back(suspicion.code + " (" + suspicion.text + ")");
         }
     }
     score.constants = score_constants(panel_case, diagnosis);

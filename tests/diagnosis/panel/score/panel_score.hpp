@@ -32,6 +32,7 @@ struct FindingScore {
     std::size_t ties = 0;
     bool right = false; ///< the finding or its class is true
     bool own_name = false;
+    bool ordinary = false; ///< names the friction or the rotor of an arm that has them at all joints
 };
 
 /// Estimate of a torque constant that was not given.
@@ -46,7 +47,7 @@ struct CaseScore {
     bool masses_off = false, outside = false;
     std::vector<EffectScore> effects;
     std::vector<FindingScore> findings;
-    std::vector<std::string> refusals; ///< codes, if the set-up or the recording is refused
+    std::vector<std::string> refusals; ///< with codes, if the set-up or the recording is refused
     std::vector<ConstantScore> constants;
     /// Relative increase of the held-out error over all outputs by the causes found. Set only for recordings
     /// without any effect, with exact masses and known constants.

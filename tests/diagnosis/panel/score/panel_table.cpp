@@ -57,8 +57,9 @@ void add_named(PanelSummary& summary, const CaseScore& score) {
 }
 
 bool any_name(const CaseScore& score) {
-    return std::ranges::any_of(score.findings,
-                               [](const FindingScore& finding) { return finding.confidence >= likely; });
+    return std::ranges::any_of(score.findings, [](const FindingScore& finding) {
+        return finding.confidence >= likely && !finding.ordinary;
+    });
 }
 
 bool wrong_name(const CaseScore& score) {
