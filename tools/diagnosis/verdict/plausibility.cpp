@@ -6,6 +6,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -57,9 +58,20 @@ void suspect_standstill(const DiagnosisSignals& signals, const Recording& record
     }
 }
 
-/// Share of the outputs' variance that remains after a fit of the rigid body, a friction and a spring per
-/// output.
+/// Returns means of blocks of 0.2 s, in which noise averages out and motion hardly does.
+Eigen::MatrixXd block_means(const Eigen::MatrixXd& rows, double rate_hz) {
+    const auto size = std::max(Eigen::Index{1}, static_cast<Eigen::Index>(0.2 * rate_hz));
+    Eigen::MatrixXd means(rows.rows() / size, rows.cols());
+    for (Eigen::Index block = 0; block < means.rows(); ++block) {
+        means.row(block) = rows.middleRows(block * size, size).colwise().mean();
+    }
+    return means;
+}
+
+/// Share of the outputs' variance between blocks that remains after a fit of the rigid body, a friction and a
+/// spring per output.
 double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
+    const double rate_hz = signals.measured.rate_hz;
     double share = 0;
     for (Eigen::Index output = 0; output < measured.cols(); ++output) {
         Eigen::MatrixXd columns(measured.rows(), signals.wrench() ? 2 : 5);
@@ -71,9 +83,11 @@ double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& mea
             columns.col(3) = motion.velocity.col(output);
             columns.col(4) = signals.direction(output);
         }
-        const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
-        const Eigen::VectorXd fit = least_squares(columns, centred);
-        share += (centred - columns * fit).squaredNorm() / centred.squaredNorm();
+        const Eigen::VectorXd means = block_means(measured.col(output), rate_hz);
+        const Eigen::VectorXd centred = means.array() - means.mean();
+        const Eigen::MatrixXd shapes = block_means(columns, rate_hz);
+        const Eigen::VectorXd fit = least_squares(shapes, centred);
+        share += (centred - shapes * fit).squaredNorm() / centred.squaredNorm();
     }
     return share / static_cast<double>(measured.cols());
 }

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace {
 
@@ -125,4 +126,20 @@ TEST_CASE(
     const Diagnosis diagnosis = diagnosis_of(one.recording());
     REQUIRE_FALSE(diagnosis.suspicions.empty());
     CHECK(diagnosis.suspicions.front().text.find("only one joint moves") != std::string::npos);
+}
+
+TEST_CASE("a recording with more noise than the motion changes its outputs is not refused as another robot") {
+    CleanRecording weak(30, 0.2);
+    std::mt19937_64 engine(1);
+    std::normal_distribution<double> normal;
+    for (Index joint = 0; joint < 6; ++joint) {
+        const VectorXd torque = weak.torque.col(joint);
+        const double size = std::sqrt((torque.array() - torque.mean()).square().mean());
+        for (double& value : weak.torque.col(joint)) {
+            value += 1.7 * size * normal(engine);
+        }
+    }
+    const Diagnosis diagnosis = diagnosis_of(weak.recording());
+    INFO((diagnosis.suspicions.empty() ? "" : diagnosis.suspicions.front().text));
+    CHECK_FALSE(refused(diagnosis));
 }
