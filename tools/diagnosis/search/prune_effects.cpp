@@ -4,6 +4,7 @@
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -130,6 +131,56 @@ bool keep_what_is_allowed(FittedEffects& at, SearchProblem& promising) {
     return dropped;
 }
 
+bool is_dry_friction(const Candidate& candidate) {
+    const Effect* const effect = find_effect(candidate.effect);
+    return effect != nullptr && effect->textbook == TextbookTerm::dry;
+}
+
+/// Returns whether a friction is neither known to least squares nor contains Coulomb friction.
+bool excludes_coulomb(const Effect& friction) {
+    return friction.friction && !friction.textbook &&
+           std::ranges::find(friction.parameters, std::string("coulomb"), &ParameterKind::name) ==
+               friction.parameters.end();
+}
+
+/// Returns the model with Coulomb friction in place of the chosen friction `index`, if that excludes it and
+/// is hardly better.
+std::optional<std::vector<ChosenShape>> with_coulomb(const FittedEffects& at, const Neighbours& near,
+                                                     std::size_t index) {
+    constexpr double column_error = 0.02; // of the friction's evidence: all kinds are inexact at reversals
+    const Candidate& own = at.candidates[at.chosen[index].candidate];
+    const Effect* const effect = find_effect(own.effect);
+    if (effect == nullptr || !excludes_coulomb(*effect)) {
+        return std::nullopt;
+    }
+    const double evidence = at.fit.score - near.score_without(index);
+    for (const Replacement& other : near.exchanges(index)) {
+        const Candidate& candidate = at.candidates[other.with.candidate];
+        if (candidate.where == own.where && is_dry_friction(candidate) &&
+            at.fit.score - other.score < column_error * evidence) {
+            std::vector<ChosenShape> simpler = at.chosen;
+            simpler[index] = other.with;
+            return simpler;
+        }
+    }
+    return std::nullopt;
+}
+
+/// Replaces friction that depends on load or on the way by Coulomb friction where it is hardly better.
+void prefer_coulomb(FittedEffects& at) {
+    for (std::size_t index = 0; index < at.named_effects().size(); ++index) {
+        const Neighbours near(at.problem, at.chosen);
+        if (const auto simpler = with_coulomb(at, near, index)) {
+            const FittedEffects before = at;
+            at.chosen = *simpler;
+            fit_named(at);
+            if (!at.named.allowed) {
+                at = before;
+            }
+        }
+    }
+}
+
 } // namespace
 
 void fit_named(FittedEffects& at) {
@@ -147,6 +198,7 @@ void prune(FittedEffects& at, const EffectRegression& regression) {
         at.chosen = search_effects(promising, at.chosen);
         at.fit = fit_effects(at.problem, at.chosen);
     }
+    prefer_coulomb(at);
 }
 
 } // namespace dfdyn::tools

@@ -22,9 +22,21 @@ namespace {
 
 constexpr double tie = 3; ///< log-odds of 20 to 1: causes with a smaller margin are indistinguishable
 constexpr double price_of_shapes = 6; ///< Occam factor of the three coefficients of a centre of mass
-/// of the evidence: below it, the difference between payload and last link is within model errors
-constexpr double same_body_share = 0.02;
+/// of the evidence: below it, the difference between payload and last link, or between a friction and Coulomb
+/// friction, is within model errors
+constexpr double model_error_share = 0.02;
 constexpr std::size_t most_alternatives = 3; ///< of a finding
+
+/// Returns the log-evidence below which another candidate is indistinguishable from the finding's own.
+double least_margin(const Finding& finding, const Candidate& own, const Candidate& other) {
+    const double model_error = model_error_share * finding.margin_to_nothing;
+    if (!other.span.empty() && other.span == own.span) {
+        return std::max(tie + price_of_shapes, model_error);
+    }
+    const bool same_friction = own.where == other.where && has_trait(own.effect, &Effect::friction) &&
+                               other.effect == effects::coulomb_friction().name;
+    return same_friction ? std::max(tie, model_error) : tie;
+}
 
 /// Determines the alternatives to a chosen effect, and their odds.
 void weigh_alternatives(Finding& finding, const FittedEffects& fitted_effects, const Neighbours& near,
@@ -41,9 +53,7 @@ void weigh_alternatives(Finding& finding, const FittedEffects& fitted_effects, c
             continue;
         }
         OtherCause cause{candidate.effect, candidate.where, {}};
-        const bool same_span = !candidate.span.empty() && candidate.span == own_candidate.span;
-        const double same_body = std::max(tie + price_of_shapes, same_body_share * finding.margin_to_nothing);
-        if (margin < (same_span ? same_body : tie)) {
+        if (margin < least_margin(finding, own_candidate, candidate)) {
             finding.indistinguishable.push_back(std::move(cause));
             continue;
         }
