@@ -1,15 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 // The arms that differ from case to case.
 #include "tests/diagnosis/panel/recording/panel_setup.hpp"
+#include "tests/diagnosis/panel/score/run_panel.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
+
+namespace {
+
+PanelMix unknown_arms() {
+    PanelMix mix;
+    mix.robot = unknown_arm;
+    return mix;
+}
+
+/// The case without a hidden effect, unless its arm is unstable.
+std::optional<PanelCase> possible_case(std::uint64_t one) {
+    PanelMix mix = unknown_arms();
+    mix.null_share = 1;
+    try {
+        return make_panel_case(one, mix);
+    } catch (const ImpossibleCase&) {
+        return std::nullopt;
+    }
+}
+
+bool is_friction(const FindingScore& finding) {
+    const dfdyn::tools::Effect* const effect = dfdyn::tools::find_effect(finding.effect);
+    return effect != nullptr && effect->friction;
+}
+
+} // namespace
 
 TEST_CASE("an unknown arm consists of bodies that can exist, also on both sides of its sensor") {
     for (std::uint64_t one = 0; one < 300; ++one) {
@@ -53,11 +82,14 @@ TEST_CASE("unknown arms have two to seven joints, all outputs, and sizes from se
 }
 
 TEST_CASE("a recording of an unknown arm is finite and within the joints' limits") {
-    for (std::uint64_t one = 0; one < 4; ++one) {
-        PanelMix mix;
-        mix.robot = unknown_arm;
-        mix.null_share = 1;
-        const PanelCase panel_case = make_panel_case(seed() + one, mix);
+    int possible = 0;
+    for (std::uint64_t one = 0; one < 8; ++one) {
+        const std::optional<PanelCase> made = possible_case(seed() + one);
+        if (!made) {
+            continue;
+        }
+        ++possible;
+        const PanelCase& panel_case = *made;
         const Recording& recording = panel_case.recording;
         CAPTURE(seed() + one);
         CHECK(panel_case.hidden.empty());
@@ -72,5 +104,18 @@ TEST_CASE("a recording of an unknown arm is finite and within the joints' limits
                 REQUIRE(std::isfinite(output));
             }
         }
+    }
+    CHECK(possible >= 4);
+}
+
+TEST_CASE("Coulomb friction is named or listed as indistinguishable where another kind is hardly better") {
+    // Stribeck friction was named at joints 1 and 2, with 0.99 and 0.94.
+    const std::vector<CaseScore> scores = run_panel(500018, 1, unknown_arms(), 1, [](const CaseScore&) {});
+    REQUIRE(scores.size() == 1);
+    const CaseScore& score = scores.front();
+    INFO(describe(score));
+    CHECK(std::ranges::count_if(score.findings, is_friction) >= 5);
+    for (const FindingScore& finding : score.findings) {
+        CHECK((finding.right || !is_friction(finding) || finding.confidence < 0.5));
     }
 }

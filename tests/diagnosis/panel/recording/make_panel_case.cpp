@@ -100,6 +100,14 @@ PanelRun draw_two(const PanelSetup& setup, const PanelMix& mix, Draw& draw, Pane
     throw ImpossibleCase("expected two effects that can be there at once, found none");
 }
 
+PanelRun run_undisturbed(const PanelSetup& setup) {
+    try {
+        return run_effects(setup, {});
+    } catch (const InputError& error) { // the controller is unstable with this arm
+        throw ImpossibleCase(error.what());
+    }
+}
+
 PanelRun draw_run(const PanelSetup& setup, const PanelMix& mix, Draw& draw, PanelCase& result) {
     Kind kind = draw_kind(mix, draw);
     if (kind == Kind::outside && (candidates(setup, kind).empty() || !setup.ordinary.empty())) {
@@ -107,7 +115,7 @@ PanelRun draw_run(const PanelSetup& setup, const PanelMix& mix, Draw& draw, Pane
     }
     if (kind == Kind::null) {
         ++result.simulations;
-        return run_effects(setup, {});
+        return run_undisturbed(setup);
     }
     if (kind == Kind::two) {
         return draw_two(setup, mix, draw, result);
