@@ -169,7 +169,8 @@ PanelSetup make_panel_setup(std::uint64_t seed, const PanelMix& mix) {
     setup.reference_output = rigid_outputs(setup, setup.robot, setup.reference);
     add_noise(setup, draw);
     Draw gears(seed, 5);
-    if (!setup.wrench() && gears.chance(conditions.ordinary_share)) {
+    const bool possible = !setup.wrench() && (!mix.effect || fits_ordinary_gears(*mix.effect));
+    if (possible && gears.chance(conditions.ordinary_share)) {
         add_ordinary_gears(setup, gears);
     }
     return setup;
