@@ -59,10 +59,10 @@ std::string family_of(std::size_t joint) { return "backlash at " + numbered("joi
 /// How a link changes flanks without an impact. Loads are relative to the rms of the rigid body's torque.
 struct Greased {
     double friction = 0; ///< dry friction at the link
-    double wide =
-        0; ///< of a soft gear: load that holds the link at three quarters of its travel. 0: of grease
-    double time_s =
-        0; ///< lag of the soft gear, or time in which a load of 1 moves the link through the grease
+    /// Of a soft gear: load that holds the link at three quarters of its travel. 0: of grease.
+    double wide = 0;
+    /// Lag of the soft gear, or time in which a load of 1 moves the link through the grease.
+    double time_s = 0;
 };
 
 /// Displacement (T) of a link that follows its load from flank to flank, per gap.

@@ -28,6 +28,11 @@ bool visible(const DiagnosisSignals& signals, const Candidate& candidate) {
 
 bool yields(const Candidate& candidate) { return has_trait(candidate.effect, &Effect::yields); }
 
+bool is_coulomb(const Candidate& candidate) {
+    const Effect* const effect = find_effect(candidate.effect);
+    return effect != nullptr && effect->textbook == TextbookTerm::dry;
+}
+
 bool has_yielding(const FittedEffects& effects) {
     return std::ranges::any_of(
         effects.chosen, [&](const ChosenShape& one) { return yields(effects.candidates[one.candidate]); });

@@ -25,6 +25,12 @@ bool yields(const Candidate& candidate);
 /// Returns whether such a candidate is chosen.
 bool has_yielding(const FittedEffects& effects);
 
+/// Share of a cause's evidence. A smaller difference to a similar cause is within the error of their columns.
+inline constexpr double model_error_share = 0.02;
+
+/// Returns whether the candidate is the dry friction that least squares knows.
+bool is_coulomb(const Candidate& candidate);
+
 /// Sets the number of candidates of each one's class, which is its prior: the unnamed ones, or the named ones
 /// without those that yield. For these it is the number of all named ones. They do not change the prior of
 /// the others.

@@ -2,6 +2,7 @@
 #include "tools/diagnosis/search/prune_effects.hpp"
 
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/search/candidate_choice.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -131,33 +132,25 @@ bool keep_what_is_allowed(FittedEffects& at, SearchProblem& promising) {
     return dropped;
 }
 
-bool is_dry_friction(const Candidate& candidate) {
+/// Returns whether a candidate is friction that is neither known to least squares nor contains Coulomb
+/// friction.
+bool excludes_coulomb(const Candidate& candidate) {
     const Effect* const effect = find_effect(candidate.effect);
-    return effect != nullptr && effect->textbook == TextbookTerm::dry;
+    return effect != nullptr && effect->friction && !effect->textbook &&
+           std::ranges::find(effect->parameters, std::string("coulomb"), &ParameterKind::name) ==
+               effect->parameters.end();
 }
 
-/// Returns whether a friction is neither known to least squares nor contains Coulomb friction.
-bool excludes_coulomb(const Effect& friction) {
-    return friction.friction && !friction.textbook &&
-           std::ranges::find(friction.parameters, std::string("coulomb"), &ParameterKind::name) ==
-               friction.parameters.end();
-}
-
-/// Returns the model with Coulomb friction in place of the chosen friction `index`, if that excludes it and
-/// is hardly better.
-std::optional<std::vector<ChosenShape>> with_coulomb(const FittedEffects& at, const Neighbours& near,
-                                                     std::size_t index) {
-    constexpr double column_error = 0.02; // of the friction's evidence: all kinds are inexact at reversals
+/// Returns the model with Coulomb friction in place of the chosen friction `index`, if that is hardly better:
+/// the columns of all kinds of friction are inexact at reversals.
+std::optional<std::vector<ChosenShape>> with_coulomb(const FittedEffects& at, std::size_t index) {
+    const Neighbours near(at.problem, at.chosen);
     const Candidate& own = at.candidates[at.chosen[index].candidate];
-    const Effect* const effect = find_effect(own.effect);
-    if (effect == nullptr || !excludes_coulomb(*effect)) {
-        return std::nullopt;
-    }
     const double evidence = at.fit.score - near.score_without(index);
     for (const Replacement& other : near.exchanges(index)) {
         const Candidate& candidate = at.candidates[other.with.candidate];
-        if (candidate.where == own.where && is_dry_friction(candidate) &&
-            at.fit.score - other.score < column_error * evidence) {
+        if (candidate.where == own.where && is_coulomb(candidate) &&
+            at.fit.score - other.score < model_error_share * evidence) {
             std::vector<ChosenShape> simpler = at.chosen;
             simpler[index] = other.with;
             return simpler;
@@ -169,13 +162,15 @@ std::optional<std::vector<ChosenShape>> with_coulomb(const FittedEffects& at, co
 /// Replaces friction that depends on load or on the way by Coulomb friction where it is hardly better.
 void prefer_coulomb(FittedEffects& at) {
     for (std::size_t index = 0; index < at.named_effects().size(); ++index) {
-        const Neighbours near(at.problem, at.chosen);
-        if (const auto simpler = with_coulomb(at, near, index)) {
-            const FittedEffects before = at;
-            at.chosen = *simpler;
+        if (!excludes_coulomb(at.candidates[at.chosen[index].candidate])) {
+            continue;
+        }
+        if (const auto simpler = with_coulomb(at, index)) {
+            const std::vector<ChosenShape> before = std::exchange(at.chosen, *simpler);
             fit_named(at);
             if (!at.named.allowed) {
-                at = before;
+                at.chosen = before;
+                fit_named(at);
             }
         }
     }

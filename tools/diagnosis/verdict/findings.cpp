@@ -5,6 +5,7 @@
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/search/candidate_choice.hpp"
 #include "tools/diagnosis/verdict/finding_gain.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
 #include "tools/diagnosis/verdict/joint_units.hpp"
@@ -21,20 +22,18 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double tie = 3; ///< log-odds of 20 to 1: causes with a smaller margin are indistinguishable
-constexpr double price_of_shapes = 6; ///< Occam factor of the three coefficients of a centre of mass
-/// of the evidence: below it, the difference between payload and last link, or between a friction and Coulomb
-/// friction, is within model errors
-constexpr double model_error_share = 0.02;
+constexpr double price_of_shapes = 6;        ///< Occam factor of the three coefficients of a centre of mass
 constexpr std::size_t most_alternatives = 3; ///< of a finding
 
 /// Returns the log-evidence below which another candidate is indistinguishable from the finding's own.
+/// Payload and last link, and friction and Coulomb friction, differ by less than their columns' errors.
 double least_margin(const Finding& finding, const Candidate& own, const Candidate& other) {
     const double model_error = model_error_share * finding.margin_to_nothing;
     if (!other.span.empty() && other.span == own.span) {
         return std::max(tie + price_of_shapes, model_error);
     }
-    const bool same_friction = own.where == other.where && has_trait(own.effect, &Effect::friction) &&
-                               other.effect == effects::coulomb_friction().name;
+    const bool same_friction =
+        own.where == other.where && has_trait(own.effect, &Effect::friction) && is_coulomb(other);
     return same_friction ? std::max(tie, model_error) : tie;
 }
 
