@@ -48,26 +48,31 @@ namespace {
 
 enum class Shows { torque, wrench, both };
 
-struct CatalogueEntry {
-    const char* name;
-    Shows shows;
-    DrawnEffect (*draw)(const EffectDraw& of);
+struct Traits {
+    bool of_gear = false; ///< cannot be hidden in a gear that has friction and a rotor anyway
     /// Left out of random cases, so that the case of a seed is the same as before this effect was added.
     bool on_request = false;
 };
 
+struct CatalogueEntry {
+    const char* name;
+    Shows shows;
+    DrawnEffect (*draw)(const EffectDraw& of);
+    Traits traits = {};
+};
+
 constexpr auto catalogue = std::to_array<CatalogueEntry>({
-    {"viscous_friction", Shows::torque, hidden_effects::viscous_friction},
-    {"coulomb_friction", Shows::torque, hidden_effects::coulomb_friction},
-    {"stribeck_friction", Shows::torque, hidden_effects::stribeck_friction},
-    {"load_dependent_friction", Shows::torque, hidden_effects::load_dependent_friction},
-    {"presliding_hysteresis", Shows::torque, hidden_effects::presliding_hysteresis},
+    {"viscous_friction", Shows::torque, hidden_effects::viscous_friction, {.of_gear = true}},
+    {"coulomb_friction", Shows::torque, hidden_effects::coulomb_friction, {.of_gear = true}},
+    {"stribeck_friction", Shows::torque, hidden_effects::stribeck_friction, {.of_gear = true}},
+    {"load_dependent_friction", Shows::torque, hidden_effects::load_dependent_friction, {.of_gear = true}},
+    {"presliding_hysteresis", Shows::torque, hidden_effects::presliding_hysteresis, {.of_gear = true}},
     {"torque_offset", Shows::torque, hidden_effects::torque_offset},
-    {"rotor_inertia", Shows::torque, hidden_effects::rotor_inertia},
+    {"rotor_inertia", Shows::torque, hidden_effects::rotor_inertia, {.of_gear = true}},
     {"joint_spring", Shows::torque, hidden_effects::joint_spring},
     {"torque_ripple", Shows::torque, hidden_effects::torque_ripple},
-    {"backlash", Shows::both, hidden_effects::backlash},
-    {"joint_flexibility", Shows::both, hidden_effects::joint_flexibility},
+    {"backlash", Shows::both, hidden_effects::backlash, {.of_gear = true}},
+    {"joint_flexibility", Shows::both, hidden_effects::joint_flexibility, {.of_gear = true}},
     {"actuator_gain", Shows::torque, hidden_effects::actuator_gain},
     {"payload", Shows::both, hidden_effects::payload},
     {"link_inertia_error", Shows::both, hidden_effects::link_inertia_error},
@@ -80,10 +85,16 @@ constexpr auto catalogue = std::to_array<CatalogueEntry>({
     {"encoder_offset", Shows::both, hidden_effects::encoder_offset},
     {"encoder_eccentricity", Shows::both, hidden_effects::encoder_eccentricity},
     {"delay", Shows::both, hidden_effects::delay},
-    {"friction_drift", Shows::torque, hidden_effects::friction_drift},
+    {"friction_drift", Shows::torque, hidden_effects::friction_drift, {.of_gear = true}},
     {"external_contact", Shows::both, hidden_effects::external_contact},
-    {"link_rotational_inertia_error", Shows::both, hidden_effects::link_rotational_inertia_error, true},
-    {"greased_backlash", Shows::both, hidden_effects::greased_backlash, true},
+    {"link_rotational_inertia_error",
+     Shows::both,
+     hidden_effects::link_rotational_inertia_error,
+     {.on_request = true}},
+    {"greased_backlash",
+     Shows::both,
+     hidden_effects::greased_backlash,
+     {.of_gear = true, .on_request = true}},
 });
 
 /// The robot with the bodies of all payloads, including those that are attached later.
@@ -115,7 +126,7 @@ MotionRows shown(const MotionRows& motion, const EncoderModel& encoders) {
 std::vector<std::string> panel_effect_names(bool all) {
     std::vector<std::string> names;
     for (const CatalogueEntry& entry : catalogue) {
-        if (all || !entry.on_request) {
+        if (all || !entry.traits.on_request) {
             names.emplace_back(entry.name);
         }
     }
@@ -131,6 +142,11 @@ bool shows(const std::string& effect, OutputKind outputs, bool constants_known) 
         return false;
     }
     return entry->shows == Shows::both || (entry->shows == Shows::wrench) == (outputs == OutputKind::wrench);
+}
+
+bool fits_ordinary_gears(const std::string& effect) {
+    const auto* const entry = std::ranges::find(catalogue, effect, &CatalogueEntry::name);
+    return entry != catalogue.end() && !entry->traits.of_gear; // those outside are friction or a coupling
 }
 
 std::optional<DrawnEffect> draw_effect(const std::string& name, const EffectDraw& of) {

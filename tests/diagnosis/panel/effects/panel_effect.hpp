@@ -53,6 +53,9 @@ std::optional<DrawnEffect> draw_effect(const std::string& name, const EffectDraw
 /// Returns whether the effect can change these outputs.
 bool shows(const std::string& effect, tools::OutputKind outputs, bool constants_known);
 
+/// Returns whether the effect can be hidden in an arm whose joints all have friction and rotors.
+bool fits_ordinary_gears(const std::string& effect);
+
 inline constexpr double stiff_bend = 5e-4; ///< rad
 /// Adds LuGre bristles that bend by `bend` (rad) before `level` (N·m) slips. Their natural frequency against
 /// `inertia` is at most `fastest` (rad/s), because the integration step must follow it; 600 suits half a

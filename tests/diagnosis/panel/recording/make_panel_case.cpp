@@ -100,17 +100,9 @@ PanelRun draw_two(const PanelSetup& setup, const PanelMix& mix, Draw& draw, Pane
     throw ImpossibleCase("expected two effects that can be there at once, found none");
 }
 
-PanelRun run_undisturbed(const PanelSetup& setup) {
-    try {
-        return run_effects(setup, {});
-    } catch (const InputError& error) { // the controller is unstable with this arm
-        throw ImpossibleCase(error.what());
-    }
-}
-
 PanelRun draw_run(const PanelSetup& setup, const PanelMix& mix, Draw& draw, PanelCase& result) {
     Kind kind = draw_kind(mix, draw);
-    if (kind == Kind::outside && (candidates(setup, kind).empty() || !setup.ordinary.empty())) {
+    if (kind == Kind::outside && candidates(setup, kind).empty()) {
         kind = Kind::one;
     }
     if (kind == Kind::null) {
@@ -149,6 +141,14 @@ PanelCase make_panel_case(std::uint64_t seed, const PanelMix& mix) {
     Draw effects(seed, 3);
     result.recording = recording_of(setup, draw_run(setup, mix, effects, result));
     return result;
+}
+
+std::optional<PanelCase> make_possible_case(std::uint64_t seed, const PanelMix& mix) {
+    try {
+        return make_panel_case(seed, mix);
+    } catch (const ImpossibleCase&) {
+        return std::nullopt;
+    }
 }
 
 } // namespace dfdyn::tests

@@ -92,4 +92,7 @@ class ImpossibleCase : public tools::InputError {
 /// simulations of about a second each.
 PanelCase make_panel_case(std::uint64_t seed, const PanelMix& mix = {});
 
+/// The case of `seed`, or nothing if it is impossible.
+std::optional<PanelCase> make_possible_case(std::uint64_t seed, const PanelMix& mix);
+
 } // namespace dfdyn::tests

@@ -202,4 +202,12 @@ PanelRun run_effects(const PanelSetup& setup, const std::vector<const Fitted*>& 
     return run;
 }
 
+PanelRun run_undisturbed(const PanelSetup& setup) {
+    try {
+        return run_panel(setup, setup.robot, setup.scenario);
+    } catch (const InputError& error) { // the controller is unstable with this arm
+        throw ImpossibleCase(error.what());
+    }
+}
+
 } // namespace dfdyn::tests

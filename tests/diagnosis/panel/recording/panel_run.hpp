@@ -18,6 +18,9 @@ struct PanelRun {
 /// Simulates the scenario. Throws InputError if the arm becomes unstable.
 PanelRun run_panel(const PanelSetup& setup, const tools::Robot& robot, const tools::Scenario& scenario);
 
+/// Simulates the setup without hidden effects. Throws ImpossibleCase if the arm becomes unstable.
+PanelRun run_undisturbed(const PanelSetup& setup);
+
 /// The recording of a run: positions, and outputs with the setup's noise.
 tools::Recording recording_of(const PanelSetup& setup, const PanelRun& run);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel/recording/panel_setup.hpp"
 
+#include "tests/diagnosis/panel/effects/panel_effect.hpp"
 #include "tests/diagnosis/panel/recording/panel_band.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/robot/dynamics/arm_dynamics.hpp"

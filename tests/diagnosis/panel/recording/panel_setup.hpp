@@ -74,9 +74,8 @@ struct PanelSetup {
     std::string output_name(Eigen::Index output) const;
 };
 
-/// Gives all joints friction and rotors. An effect of the gear itself cannot be hidden in addition.
+/// Gives all joints friction and rotors.
 void add_ordinary_gears(PanelSetup& setup, Draw draw);
-bool fits_ordinary_gears(const std::string& effect);
 
 PanelSetup make_panel_setup(std::uint64_t seed, const PanelMix& mix);
 

@@ -166,8 +166,8 @@ std::string describe(const CaseScore& score) {
         text += part.data();
     }
     text += " ||";
-    for (const std::string& code : score.refusals) {
-        text += " refused: " + code;
+    for (const std::string& refusal : score.refusals) {
+        text += " refused: " + refusal;
     }
     for (const FindingScore& finding : score.findings) {
         std::snprintf(part.data(), part.size(), " %s%s@%s %.2f (%.1f/%.1f,%zu)",

@@ -13,16 +13,8 @@ namespace dfdyn::tests {
 
 namespace {
 
-std::optional<PanelCase> possible_case(std::uint64_t seed, const PanelMix& mix) {
-    try {
-        return make_panel_case(seed, mix);
-    } catch (const ImpossibleCase&) {
-        return std::nullopt;
-    }
-}
-
 std::optional<CaseScore> run_case(std::uint64_t seed, const PanelMix& mix) {
-    const std::optional<PanelCase> made = possible_case(seed, mix);
+    const std::optional<PanelCase> made = make_possible_case(seed, mix);
     if (!made) {
         return std::nullopt;
     }
