@@ -91,7 +91,7 @@ def recordings(trial):
     lossy = trial.replay([row for number, row in enumerate(rows) if number % 40])
     trial.shows("gap", lossy)
     trial.shows("window_filling", lossy)
-    changed = trial.replay(rows[:1500] + trial.scaled(7, 7, 6)[1500:])
+    changed = trial.replay(rows[:1500] + trial.scaled(7, 7, 10)[1500:])
     trial.shows("innovation_too_large", changed)
     trial.shows("prediction_bounded", changed)
     trial.run("train", *trial.quickly(), "-o", "physics.json", "--model", "SPK", *UR5, "--log", trial.recording(rows))
