@@ -22,8 +22,10 @@ namespace {
 constexpr double beside_s = 0.25; ///< of the same standstill, before and after a contact
 constexpr double between_s = 0.5; ///< pulses closer than this belong to the same contact
 constexpr double least_probability = 0.25;
-constexpr double known_deviations = 4;  ///< minimum ratio of known friction to its standard deviation
-constexpr double uncertain_share = 0.2; ///< standard deviation, as a share of the rigid body's change
+constexpr double certain_probability = 0.95;
+constexpr std::ptrdiff_t most_uncertain = 3; ///< contacts that are not certain, at a joint
+constexpr double known_deviations = 4;       ///< minimum ratio of known friction to its standard deviation
+constexpr double uncertain_share = 0.2;      ///< standard deviation, as a share of the rigid body's change
 
 /// Largest dry friction torque of a joint (N·m) and its variance.
 struct Holding {
@@ -154,6 +156,12 @@ class JointStands {
                 contact.share = contact.change * pulse_series(signals_, contact.pulse);
                 result.push_back(std::move(contact));
             }
+        }
+        const auto uncertain = [](const StationaryContact& one) {
+            return one.probability() < certain_probability;
+        };
+        if (std::ranges::count_if(result, uncertain) > most_uncertain) {
+            std::erase_if(result, uncertain); // the joint deviates more than its friction and its noise allow
         }
         return result;
     }

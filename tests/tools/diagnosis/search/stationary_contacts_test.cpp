@@ -136,6 +136,35 @@ TEST_CASE("no push at rest is reported if the friction estimate is uncertain") {
     CHECK(pushes_in(signals, fitted_effects, measured).empty());
 }
 
+TEST_CASE("more than three uncertain pushes at a joint are its usual deviations, and a certain one remains") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const DiagnosisSignals signals = standing_arm();
+    std::normal_distribution<double> noise(0, 0.3);
+    MatrixXd at_rest = signals.nominal;
+    for (Index row = stand_first; row < stand_first + stand_rows; ++row) {
+        at_rest(row, 0) += noise(engine);
+    }
+    const auto pushes_of = [&](const std::vector<double>& changes) {
+        MatrixXd measured = at_rest;
+        for (std::size_t i = 0; i < changes.size(); ++i) {
+            const double start_s = 3 + 2.2 * static_cast<double>(i);
+            measured.col(0) += changes[i] * pulse_series(signals, {start_s, start_s + 0.75, 0.2});
+        }
+        return pushes_in(signals, with_friction(signals, "coulomb"), measured);
+    };
+    double uncertain = 2 * friction;
+    while (pushes_of({uncertain}).empty() || pushes_of({uncertain})[0].probability() < 0.7) {
+        uncertain += 0.02;
+        REQUIRE(uncertain < 3 * friction);
+    }
+    CAPTURE(uncertain);
+    CHECK(pushes_of({uncertain, uncertain, uncertain}).size() == 3);
+    CHECK(pushes_of(std::vector<double>(5, uncertain)).empty());
+    const auto remaining = pushes_of({uncertain, uncertain, 30, uncertain, uncertain, uncertain});
+    REQUIRE(remaining.size() == 1);
+    CHECK(remaining[0].change == Approx(30).epsilon(0.2));
+}
+
 TEST_CASE("a push as large as static friction has a probability of one half") {
     StationaryContact push;
     push.change = -10;
