@@ -7,11 +7,18 @@
 
 namespace dfdyn::tools {
 
+namespace {
+
+constexpr double mean_readings = 10; ///< memory of the mean velocity
+
+} // namespace
+
 JointWatch::JointWatch(SafeStopConfig config, double period_s, double noise_bound)
     : config_(std::move(config)), period_s_(period_s), noise_bound_(noise_bound) {
     const Eigen::Index joints = config_.following_error.size();
     const auto count = static_cast<std::size_t>(joints);
-    reading_ = speed_ = lowest_ = highest_ = quantum_ = pressing_position_ = JointVector::Zero(joints);
+    reading_ = speed_ = mean_velocity_ = lowest_ = highest_ = quantum_ = pressing_position_ =
+        JointVector::Zero(joints);
     same_.resize(count);
     stuck_.resize(count);
     fast_.resize(count);
@@ -60,8 +67,11 @@ void JointWatch::read(const JointVector& position, const JointVector& reference,
             continue;
         }
         const double step = std::abs(position[joint] - reading_[joint]);
+        const double velocity = feedback.velocity()[joint];
+        mean_velocity_[joint] += (velocity - mean_velocity_[joint]) / mean_readings;
         if (started_ && step == 0) {
-            repeat(joint, reference[joint], std::abs(feedback.velocity()[joint]));
+            const double steady = std::min(std::abs(velocity), std::abs(mean_velocity_[joint]));
+            repeat(joint, reference[joint], velocity * mean_velocity_[joint] > 0 ? steady : 0);
             continue;
         }
         if (started_) {

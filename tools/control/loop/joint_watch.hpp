@@ -17,8 +17,9 @@ namespace dfdyn::tools {
 ///
 /// Either of two conditions shows that a joint must have moved:
 /// - Speed: with an eighth of `acceleration` it could not stop within two quantization steps (the smallest
-///   step so far) plus four noise bounds of the velocity's filter. The repeated readings are then not used:
-///   see `repeated`.
+///   step so far) plus four noise bounds of the velocity's filter. The speed is the smaller one of the
+///   present velocity and its mean over ten readings: a joint that vibrates or sticks has a velocity, too.
+///   The repeated readings are then not used: see `repeated`.
 /// - Reference: it has since covered a sixteenth of the following error and eight quantization steps.
 ///
 /// O(joints) per tick; no heap after construction.
@@ -55,7 +56,8 @@ class JointWatch {
     SafeStopConfig config_;
     double period_s_, noise_bound_;
     bool started_ = false;
-    JointVector reading_, speed_;                     ///< at the last change of the reading
+    JointVector reading_, speed_; ///< at the last change of the reading
+    JointVector mean_velocity_;
     JointVector lowest_, highest_;                    ///< range of the reference since then
     JointVector quantum_;                             ///< smallest step so far; 0 before the first
     JointVector pressing_position_;                   ///< position when the command reached its limit

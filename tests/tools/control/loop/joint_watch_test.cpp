@@ -3,8 +3,10 @@
 
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace joint_watch_test {
 
@@ -94,6 +96,19 @@ TEST_CASE("a joint that rests or stops abruptly or creeps is not reported as fro
     Joint creeping; // one quantum every 8 readings
     for (int tick = 0; tick < 2000; ++tick) {
         CHECK(creeping.tick(quantum / 8 * tick) == StopCause::none);
+    }
+}
+
+TEST_CASE("a joint that vibrates and then sticks is not reported as frozen") {
+    constexpr double amplitude = 10 * quantum, frequency_hz = 50;
+    for (int last = 200; last < 210; ++last) { // all phases of a period of ten readings
+        CAPTURE(last);
+        Joint joint;
+        for (int tick = 0; tick <= last + 20; ++tick) {
+            const double time_s = period_s * std::min(tick, last);
+            const double position = amplitude * std::sin(2 * std::numbers::pi * frequency_hz * time_s);
+            CHECK(joint.tick(position, 0) == StopCause::none);
+        }
     }
 }
 
