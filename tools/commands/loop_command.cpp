@@ -69,8 +69,8 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
     command
         .add_option("--learned-limit", limits.learned_limit,
                     "Largest learned torque that is added to the rigid body's, as a share of the torque "
-                    "limit; one value, or one per joint. Learned are the model and, for SPK, a second one of "
-                    "its physics alone with a memory of 0.53 s. 0: learned, but not used. Default: 0.5")
+                    "limit; one value, or one per joint. Learned are the model and, for SPK, its "
+                    "physics alone with memories of 0.53 s and 8 s. 0: learned, but not used. Default: 0.5")
         ->delimiter(',')
         ->check(number_in(0.0, 1.0))
         ->type_name("F");

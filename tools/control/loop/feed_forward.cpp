@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -108,8 +109,8 @@ JointVector FeedForward::holding(const Reference& reference) {
     if (held_learned_.size() == 0) {
         held_learned_ = joint_vector(core_->learned_part());
     }
-    JointVector forecasts;
-    if (learned_->rest(reference.position, forecasts)) {
+    const std::span<const double> forecasts = learned_->rest(reference.position);
+    if (!forecasts.empty()) {
         const JointVector at_rest = gravity(reference.position);
         JointVector holding(torque.size());
         core_->combine(forecasts.data(), at_rest.data(), holding.data());

@@ -27,8 +27,8 @@ TrainedModel impatient(TrainedModel model) {
 }
 
 /// Returns model P of the physics of a model with features. The features' part of the outputs counts as noise
-/// with their prior variance. Every sample is learned, because the memory is short.
-TrainedModel physics_of(TrainedModel model) {
+/// with their prior variance. The memory has at least one sample per parameter. Every sample is learned.
+TrainedModel physics_of(TrainedModel model, double memory_s) {
     const double noise_factor = std::sqrt(1 + model.outputs.prior_variance);
     for (double& noise : model.outputs.noise_std) {
         noise *= noise_factor;
@@ -37,8 +37,7 @@ TrainedModel physics_of(TrainedModel model) {
     model.structure = structures::P.name;
     model.features = {};
     model.extrapolation.reset();
-    model.forgetting_factor =
-        std::max(1 - model.sample_period_s / LearnedFeedForward::physics_memory_s, 1 - 1 / parameters);
+    model.forgetting_factor = std::max(1 - model.sample_period_s / memory_s, 1 - 1 / parameters);
     model.limits.innovation_patience = 0;
     return model;
 }
@@ -88,7 +87,9 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
     }
     follower_ = make_estimator(model, from_prior);
     if (structure_of(model).coupled()) {
-        physics_ = Learner{.estimator = make_estimator(physics_of(model), true)};
+        for (const double memory_s : physics_memories_s) {
+            physics_.push_back({.estimator = make_estimator(physics_of(model, memory_s), true)});
+        }
     }
     const auto prepare = [&](Learner& one) {
         one.share = share_of(one.estimator->cost(), ticks);
@@ -96,17 +97,18 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
         one.take_over();
     };
     prepare(learner_);
-    if (physics_) {
-        prepare(*physics_);
+    for (Learner& physics : physics_) {
+        prepare(physics);
     }
     prediction_.resize(static_cast<std::size_t>(joints));
+    forecasts_at_rest_.resize(static_cast<std::size_t>(forecast_count()) * prediction_.size());
 }
 
 void LearnedFeedForward::begin(std::int64_t time_ns, const double* position) {
     begin_ns_ = time_ns;
     learner_.estimator->begin_recording();
-    if (physics_) {
-        physics_->estimator->begin_recording();
+    for (Learner& physics : physics_) {
+        physics.estimator->begin_recording();
     }
     follower_->begin_recording();
     for (int lag = lags_; lag >= 0; --lag) {
@@ -118,9 +120,9 @@ void LearnedFeedForward::learn(std::int64_t time_ns, const double* position, con
     const std::span<const double> output = torque != nullptr ? of_joints(torque) : std::span<const double>();
     const MeasuredSample sample{time_ns, of_joints(position), {}, {}, output};
     const Status status = learner_.learn(sample);
-    if (physics_) { // does not learn a contact, either
-        physics_->learn(contact_joint() < 0 ? sample
-                                            : MeasuredSample{time_ns, of_joints(position), {}, {}, {}});
+    for (Learner& physics : physics_) { // does not learn a contact, either
+        physics.learn(contact_joint() < 0 ? sample
+                                          : MeasuredSample{time_ns, of_joints(position), {}, {}, {}});
     }
     counters_.samples += torque != nullptr ? 1 : 0;
     if (learns(status)) {
@@ -141,8 +143,8 @@ RecordedChanges LearnedFeedForward::changes() const {
 
 void LearnedFeedForward::go_on() {
     learner_.go_on();
-    if (physics_) {
-        physics_->go_on();
+    for (Learner& physics : physics_) {
+        physics.go_on();
     }
 }
 
@@ -183,9 +185,9 @@ std::int64_t LearnedFeedForward::tick_cost() const {
     const Cost cost = learner_.estimator->cost();
     // the learner's tick, and the follower's with a prediction from the learner's weights
     std::int64_t total = 2 * (cost.predict + cost.variance) + learner_.share.operations + cost.predict;
-    if (physics_) { // its own tick, and another prediction for the reference
-        const Cost of_physics = physics_->estimator->cost();
-        total += of_physics.predict + of_physics.variance + physics_->share.operations + cost.predict;
+    for (const Learner& physics : physics_) { // its own tick, and another prediction for the reference
+        const Cost of_physics = physics.estimator->cost();
+        total += of_physics.predict + of_physics.variance + physics.share.operations + cost.predict;
     }
     return total;
 }
@@ -201,12 +203,15 @@ bool LearnedFeedForward::predict(std::int64_t time_ns, const double* reference, 
 }
 
 bool LearnedFeedForward::take_forecasts(double* torque) {
-    const bool known = take_prediction(learner_, torque);
-    const bool physics_known = physics_ && take_prediction(*physics_, torque + prediction_.size());
-    return known || physics_known;
+    bool known = take_prediction(learner_, torque);
+    for (const Learner& physics : physics_) {
+        torque += prediction_.size();
+        known = take_prediction(physics, torque) || known;
+    }
+    return known;
 }
 
-bool LearnedFeedForward::rest(const JointVector& position, JointVector& forecasts_at_rest) {
+std::span<const double> LearnedFeedForward::rest(const JointVector& position) {
     if (rest_lag_ == 0) {
         follower_->begin_recording();
         rest_position_ = position;
@@ -214,11 +219,10 @@ bool LearnedFeedForward::rest(const JointVector& position, JointVector& forecast
     const Tick tick =
         follower_->tick({rest_lag_ * sample_period_ns_, of_joints(rest_position_.data()), {}, {}, {}});
     rest_lag_ = rest_lag_ < lags_ ? rest_lag_ + 1 : 0;
-    if (rest_lag_ > 0 || !tick.status.estimated()) {
-        return false;
+    if (rest_lag_ > 0 || !tick.status.estimated() || !take_forecasts(forecasts_at_rest_.data())) {
+        return {};
     }
-    forecasts_at_rest.resize(forecast_count() * position.size());
-    return take_forecasts(forecasts_at_rest.data());
+    return forecasts_at_rest_;
 }
 
 bool LearnedFeedForward::take_prediction(const Learner& learner, double* torque) {

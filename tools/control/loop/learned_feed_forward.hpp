@@ -6,10 +6,10 @@
 #include "tools/replay/contacts/contact_estimator.hpp"
 #include "tools/robot/dynamics/joint_vector.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,10 +34,11 @@ void check_loop_model(const TrainedModel& model, int joints, const std::string& 
 /// other always has the first one's weights. The command therefore depends on the reference, without the
 /// encoders' noise and delay, and the weights depend on the measured motion.
 ///
-/// For a model with features and learned physics (SPK) a third estimator learns the physics alone, with a
-/// memory of `physics_memory_s` and without innovation gate. Its forecast is the second one. It has few
-/// parameters, so it is accurate within a second after a change of the arm, before the features are. It
-/// starts from the prior, also after `restore`.
+/// For a model with features and learned physics (SPK) two more estimators learn the physics alone, with the
+/// memories `physics_memories_s` and without innovation gate. Their forecasts follow the first one. They have
+/// few parameters: with the short memory they are accurate within a second after a change of the arm, before
+/// the features are, and with the long one wherever the physics is all there is to learn. They start from the
+/// prior, also after `restore`.
 ///
 /// The work for one sample is distributed over the control ticks until the next sample, with a bounded share
 /// per tick. This is the host's counterpart of dfdyn::LearnedTorque (a dfdyn::TorqueLearner), for models of
@@ -47,8 +48,9 @@ class LearnedFeedForward {
     using Scalar = double;
     static constexpr int outputs = dynamic;
     static constexpr int forecasts = dynamic;
-    /// Chosen on the iCub's arm with tripled friction (docs/results/loop.md).
-    static constexpr double physics_memory_s = 0.53;
+    /// Memories of the learners of the physics alone. The short one was chosen on the iCub's arm with
+    /// tripled friction (docs/results/loop.md); the long one is a common choice, and not tuned.
+    static constexpr std::array physics_memories_s{0.53, 8.0};
 
     /// `from_prior`: ignores the initial weights from training. `ticks`: control ticks per sample. `monitor`:
     /// monitors the learner; null for none. `contact`: limits for the detection of contacts, in which nothing
@@ -58,8 +60,8 @@ class LearnedFeedForward {
                        const ContactModel* contact = nullptr);
 
     Extent<dynamic> output_count() const noexcept { return {static_cast<int>(prediction_.size())}; }
-    /// Returns 1; with the physics alone 2.
-    Extent<dynamic> forecast_count() const noexcept { return {physics_ ? 2 : 1}; }
+    /// Returns 1, and one more per learner of the physics alone.
+    Extent<dynamic> forecast_count() const noexcept { return {1 + static_cast<int>(physics_.size())}; }
 
     /// Restarts both windows for an arm that has been at rest at `position` (one value per joint, rad) for a
     /// long time; `time_ns`: the present time.
@@ -76,10 +78,10 @@ class LearnedFeedForward {
     bool predict(std::int64_t time_ns, const double* reference, double* torque);
 
     /// Predicts the torque (N·m) that holds the arm at rest at `position`, after the motion has ended. Each
-    /// call adds one sample to the window. The call that completes the window writes the forecasts as
-    /// `predict` does, for the position of the first of these calls. It returns true if one is valid, and
-    /// starts the next window.
-    bool rest(const JointVector& position, JointVector& forecasts_at_rest);
+    /// call adds one sample to the window. The call that completes the window returns the forecasts as
+    /// `predict` writes them, for the position of the first of these calls, if one is valid, and starts the
+    /// next window. The other calls return nothing. The result is valid until the next call.
+    std::span<const double> rest(const JointVector& position);
 
     /// Returns the learned state in the firmware's format, to continue after a restart.
     std::vector<std::byte> snapshot() const { return learner_.estimator->snapshot(); }
@@ -123,7 +125,7 @@ class LearnedFeedForward {
     std::int64_t sample_period_ns_;
     int lags_;
     Learner learner_;
-    std::optional<Learner> physics_; ///< learns the physics alone
+    std::vector<Learner> physics_; ///< learn the physics alone, one per memory
     std::unique_ptr<RuntimeEstimator> follower_;
     MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is monitored
     ContactEstimator* contacts_ = nullptr;  ///< the learner, if contacts are detected
@@ -131,6 +133,7 @@ class LearnedFeedForward {
     std::vector<float> prediction_;
     int rest_lag_ = 0; ///< samples already added to the window by `rest`
     JointVector rest_position_;
+    std::vector<double> forecasts_at_rest_;
     LearningCounters counters_;
 };
 

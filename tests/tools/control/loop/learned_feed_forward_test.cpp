@@ -146,11 +146,11 @@ TEST_CASE("the forecast of the physics alone follows a change of the arm before 
     TrainedModel model = dfdyn::tests::small_physics_model(engine, "SPK", InputKind::DFR, /*wrench=*/false);
     model.outputs.prior_variance = 1; // the features' part is no larger than the noise
     LearnedFeedForward feed_forward(model, true, 2, 4, "model");
-    REQUIRE(feed_forward.forecast_count() == 2);
+    REQUIRE(feed_forward.forecast_count() == 3);
     CHECK(LearnedFeedForward(model_of(engine), true, 2, 4, "model").forecast_count() == 1);
     constexpr std::int64_t model_period = 4'000'000;
     constexpr double load = 5;
-    std::array<double, 4> predicted{};
+    std::array<double, 6> predicted{}; // the whole model, then the physics with a short and a long memory
     feed_forward.begin(0, position(0).data());
     for (int tick = 1; tick <= 2250; ++tick) { // at 2000 the load of joint 2 changes its sign
         const std::array<double, 2> measured{0, tick <= 2000 ? load : -load};
@@ -162,6 +162,33 @@ TEST_CASE("the forecast of the physics alone follows a change of the arm before 
     }
     CHECK(predicted[3] < -0.3 * load);
     CHECK(predicted[1] > predicted[3] + 0.5 * load);
+    CHECK(predicted[5] > predicted[3] + 0.5 * load);
+}
+
+TEST_CASE("of an unchanged arm's noisy torque a long memory of the physics is better than a short one") {
+    DFDYN_SEEDED_ENGINE(engine);
+    TrainedModel model = dfdyn::tests::small_physics_model(engine, "SPK", InputKind::DFR, /*wrench=*/false);
+    model.outputs.prior_variance = 1;
+    LearnedFeedForward feed_forward(model, true, 2, 4, "model");
+    constexpr std::int64_t model_period = 4'000'000;
+    constexpr double load = 5;
+    std::normal_distribution<double> noise(0, 1);
+    std::array<double, 6> predicted{};
+    double short_memory = 0; // sums of square errors
+    double long_memory = 0;
+    feed_forward.begin(0, position(0).data());
+    for (int tick = 1; tick <= 6000; ++tick) {
+        const std::array<double, 2> measured{noise(engine), load + noise(engine)};
+        feed_forward.learn(tick * model_period, position(tick).data(), measured.data());
+        for (int slice = 1; slice < 4; ++slice) {
+            feed_forward.go_on();
+        }
+        REQUIRE(feed_forward.predict(tick * model_period, position(tick).data(), predicted.data()));
+        short_memory += tick > 3000 ? std::pow(predicted[3] - load, 2) : 0;
+        long_memory += tick > 3000 ? std::pow(predicted[5] - load, 2) : 0;
+    }
+    CAPTURE(short_memory, long_memory);
+    CHECK(long_memory < 0.5 * short_memory);
 }
 
 TEST_CASE("forecasts of a reference out of range and those beyond the model's bounds are NaN") {
@@ -182,10 +209,11 @@ TEST_CASE("forecasts of a reference out of range and those beyond the model's bo
     LearnedFeedForward restored(model, true, 2, 4, "model"); // its physics alone have learned nothing
     REQUIRE(restored.restore(learned.snapshot()));
     restored.begin(0, position(0).data());
-    std::array<double, 4> predicted{};
+    std::array<double, 6> predicted{};
     REQUIRE(restored.predict(model_period, position(1).data(), predicted.data()));
     CHECK((std::isnan(predicted[0]) && std::isnan(predicted[1])));
-    CHECK((std::isfinite(predicted[2]) && std::isfinite(predicted[3])));
+    CHECK(std::all_of(predicted.begin() + 2, predicted.end(),
+                      [](double value) { return std::isfinite(value); }));
     CHECK(restored.counters().reference_unknown == 0);
     const std::array<double, 2> absurd{1e9, 0};
     CHECK_FALSE(restored.predict(2 * model_period, absurd.data(), predicted.data()));
