@@ -225,6 +225,19 @@ TEST_CASE("seven moteus controllers at 500 Hz track three times better than with
     check_short_tracking(seven_joint_loop("moteus_loop.json"));
 }
 
+TEST_CASE("no command of a seven-joint arm changes by a tenth of its limit within a tick") {
+    for (const std::string bus : {"damiao_loop.json", "moteus_loop.json"}) {
+        CAPTURE(bus);
+        const Setting arm = seven_joint_loop(bus);
+        dfdyn::tests::FaultyLoop loop(arm.robot, arm.scenario, arm.bus);
+        loop.run_to(0.1); // the first command holds the arm
+        loop.forget_peaks();
+        loop.run_to(10);
+        CHECK(loop.loop().state() == LoopState::running);
+        CHECK(loop.peak_step() < 0.1);
+    }
+}
+
 TEST_CASE("a seven-joint arm that learns stops without a jump and about as soon as one that does not") {
     const Setting arm = seven_joint_loop("moteus_loop.json");
     const LoopModel model = trained(arm);

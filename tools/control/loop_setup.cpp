@@ -8,6 +8,8 @@
 #include "tools/can/arm/device_frames.hpp"
 #include "tools/can/arm/torque_frames.hpp"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -117,6 +119,34 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
     return config;
 }
 
+/// Inertia of each joint (links and rotor), kg·m² or kg.
+struct InertiaRange {
+    JointVector start; ///< with the other joints locked, at the start of the motion
+    JointVector least; ///< smallest during the motion, with the other joints free to give way
+    JointVector most;  ///< largest during the motion, with the other joints locked
+};
+
+/// Evaluates a minute of the motion, every quarter of a second.
+InertiaRange inertia_of_motion(const Robot& robot, const Scenario& scenario) {
+    constexpr double duration_s = 60, step_s = 0.25;
+    const ArmDynamics dynamics(robot, scenario.actuators.rotor_inertia);
+    const std::unique_ptr<Task> task = make_task(scenario.task, robot, step_s, scenario.seed);
+    ArmDynamics::Configuration configuration;
+    InertiaRange range;
+    for (double time_s = 0; time_s <= duration_s; time_s += step_s) {
+        dynamics.configure(task->next().position, configuration);
+        const JointMatrix mass = dynamics.mass_matrix(configuration);
+        const JointVector locked = mass.diagonal();
+        const JointVector free = mass.inverse().diagonal().cwiseInverse();
+        if (time_s == 0) {
+            range = {locked, free, locked};
+        }
+        range.least = range.least.cwiseMin(free);
+        range.most = range.most.cwiseMax(locked);
+    }
+    return range;
+}
+
 /// Returns the velocity filter with the scenario's window length, converted to readings of the loop.
 DerivativeModel loop_filter(const Scenario& scenario) {
     DerivativeModel filter = scenario.derivatives;
@@ -126,25 +156,23 @@ DerivativeModel loop_filter(const Scenario& scenario) {
     return filter;
 }
 
-JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, const JointVector& start,
-                              int delay_ticks) {
+JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, int delay_ticks) {
     constexpr double margin_rad = 20 * std::numbers::pi / 180, most = 40, window_share = 0.5;
     const ControllerModel& controller = scenario.controller;
     const DerivativeModel filter = loop_filter(scenario);
-    const ArmDynamics dynamics(robot, scenario.actuators.rotor_inertia);
-    ArmDynamics::Configuration configuration;
-    dynamics.configure(start, configuration);
-    JointVector bandwidth = dynamics.mass_matrix(configuration).diagonal();
+    const InertiaRange inertia = inertia_of_motion(robot, scenario);
+    JointVector bandwidth = inertia.start;
     for (Eigen::Index i = 0; i < bandwidth.size(); ++i) {
-        const double inertia = bandwidth[i];
+        const double start = inertia.start[i];
         bandwidth[i] = most;
-        for (const double times : {0.6, 1.0, 2.0}) {
-            const JointLoop<double> loop{times * inertia, controller.position_gain[i],
+        for (const double true_inertia :
+             {std::min(0.6 * start, inertia.least[i]), start, std::max(2 * start, inertia.most[i])}) {
+            const JointLoop<double> loop{true_inertia, controller.position_gain[i],
                                          controller.velocity_gain[i],
                                          (delay_ticks + 0.5) / controller.rate_hz,
                                          window_share * filter.velocity_window / filter.rate_hz / 2};
             bandwidth[i] =
-                std::min(bandwidth[i], LoopMargin(loop, inertia).largest_bandwidth(margin_rad, most));
+                std::min(bandwidth[i], LoopMargin(loop, start).largest_bandwidth(margin_rad, most));
         }
     }
     return bandwidth;
@@ -182,7 +210,7 @@ LoopConfig loop_config(const Robot& robot, const Scenario& scenario, const std::
     config.torque_limit = torque_limit(robot, scenario, source);
     config.safe_stop = default_limits(robot, scenario, config.torque_limit, start);
     config.bandwidth = limits.observer_bandwidth.empty()
-                           ? default_bandwidth(robot, scenario, start, delay_ticks)
+                           ? default_bandwidth(robot, scenario, delay_ticks)
                            : given_bandwidth(limits.observer_bandwidth, robot, controller.rate_hz);
     config.safe_stop.mode = limits.mode;
     config.actions = limits.actions;
