@@ -126,19 +126,26 @@ struct InertiaRange {
     JointVector most;  ///< largest during the motion, with the other joints locked
 };
 
-/// Evaluates a minute of the motion, every quarter of a second.
+/// Evaluates the first 20 s of the motion, four times per second.
 InertiaRange inertia_of_motion(const Robot& robot, const Scenario& scenario) {
-    constexpr double duration_s = 60, step_s = 0.25;
+    constexpr double duration_s = 20, step_s = 0.25;
+    const double rate_hz = scenario.controller.rate_hz;
+    const auto ticks = static_cast<int>(duration_s * rate_hz);
+    const int step = std::max(1, static_cast<int>(step_s * rate_hz));
     const ArmDynamics dynamics(robot, scenario.actuators.rotor_inertia);
-    const std::unique_ptr<Task> task = make_task(scenario.task, robot, step_s, scenario.seed);
+    const std::unique_ptr<Task> task = make_task(scenario.task, robot, 1 / rate_hz, scenario.seed);
     ArmDynamics::Configuration configuration;
     InertiaRange range;
-    for (double time_s = 0; time_s <= duration_s; time_s += step_s) {
-        dynamics.configure(task->next().position, configuration);
+    for (int tick = 0; tick <= ticks; ++tick) {
+        const JointVector position = task->next().position;
+        if (tick % step != 0) {
+            continue;
+        }
+        dynamics.configure(position, configuration);
         const JointMatrix mass = dynamics.mass_matrix(configuration);
         const JointVector locked = mass.diagonal();
         const JointVector free = mass.inverse().diagonal().cwiseInverse();
-        if (time_s == 0) {
+        if (tick == 0) {
             range = {locked, free, locked};
         }
         range.least = range.least.cwiseMin(free);

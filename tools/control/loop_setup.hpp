@@ -46,7 +46,7 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
 
 /// Returns the bandwidth of the disturbance observer, rad/s per joint: the largest one up to 40 with a phase
 /// margin of 20 degrees (dfdyn::LoopMargin) at the joint's own inertia at the start of the motion, and at 0.6
-/// and 2 times this inertia. In a minute of the motion its inertia may be beyond these: larger in other
+/// and 2 times this inertia. In the first 20 s of the motion its inertia may be beyond these: larger in other
 /// postures, and smaller if the other joints give way, as for two joints with nearly parallel axes. Then the
 /// margin holds at these extremes. The delay is the bus' (`delay_ticks`), plus half a tick for holding the
 /// command, plus half the largest window of the velocity filter. Slower motion has longer windows and a

@@ -49,7 +49,8 @@ class LearnedFeedForward {
     static constexpr int outputs = dynamic;
     static constexpr int forecasts = dynamic;
     /// Memories of the learners of the physics alone. The short one was chosen on the iCub's arm with
-    /// tripled friction (docs/results/loop.md); the long one is a common choice, and not tuned.
+    /// tripled friction (docs/results/loop.md); the long one is that of the least squares of that page, and
+    /// not tuned.
     static constexpr std::array physics_memories_s{0.53, 8.0};
 
     /// `from_prior`: ignores the initial weights from training. `ticks`: control ticks per sample. `monitor`:
