@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -17,8 +18,8 @@ JointWatch::JointWatch(SafeStopConfig config, double period_s, double noise_boun
     : config_(std::move(config)), period_s_(period_s), noise_bound_(noise_bound) {
     const Eigen::Index joints = config_.following_error.size();
     const auto count = static_cast<std::size_t>(joints);
-    reading_ = speed_ = mean_velocity_ = lowest_ = highest_ = quantum_ = pressing_position_ =
-        JointVector::Zero(joints);
+    speed_ = mean_velocity_ = lowest_ = highest_ = quantum_ = pressing_position_ = JointVector::Zero(joints);
+    reading_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
     same_.resize(count);
     stuck_.resize(count);
     fast_.resize(count);
@@ -66,15 +67,15 @@ void JointWatch::read(const JointVector& position, const JointVector& reference,
         if (missing[j]) {
             continue;
         }
-        const double step = std::abs(position[joint] - reading_[joint]);
+        const double step = std::abs(position[joint] - reading_[joint]); // NaN for the first reading
         const double velocity = feedback.velocity()[joint];
         mean_velocity_[joint] += (velocity - mean_velocity_[joint]) / mean_readings;
-        if (started_ && step == 0) {
+        if (step == 0) {
             const double steady = std::min(std::abs(velocity), std::abs(mean_velocity_[joint]));
             repeat(joint, reference[joint], velocity * mean_velocity_[joint] > 0 ? steady : 0);
             continue;
         }
-        if (started_) {
+        if (step > 0) {
             quantum_[joint] = quantum_[joint] > 0 ? std::min(step, quantum_[joint]) : step;
         }
         reading_[joint] = position[joint];
@@ -82,7 +83,6 @@ void JointWatch::read(const JointVector& position, const JointVector& reference,
         same_[j] = stuck_[j] = 0;
         repeated_[j] = false;
     }
-    started_ = true;
 }
 
 void JointWatch::move(const PositionFeedback& feedback, const JointVector& command) {

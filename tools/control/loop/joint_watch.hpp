@@ -55,8 +55,7 @@ class JointWatch {
 
     SafeStopConfig config_;
     double period_s_, noise_bound_;
-    bool started_ = false;
-    JointVector reading_, speed_; ///< at the last change of the reading
+    JointVector reading_, speed_; ///< at the last change of the reading; NaN before the first
     JointVector mean_velocity_;
     JointVector lowest_, highest_;                    ///< range of the reference since then
     JointVector quantum_;                             ///< smallest step so far; 0 before the first

@@ -28,16 +28,20 @@ SafeStopConfig limits() {
 class Joint {
   public:
     StopCause tick(double position, double reference, double command = 0) {
-        const JointVector reading = JointVector::Constant(1, quantum * std::round(position / quantum));
+        const JointVector reading =
+            JointVector::Constant(1, offset + quantum * std::round(position / quantum));
         const Reference target{JointVector::Constant(1, reference), JointVector::Zero(1),
                                JointVector::Zero(1)};
         feedback_.advance();
-        watch.read(reading, target.position, feedback_, {false});
+        watch.read(reading, target.position, feedback_, {missing});
         feedback_.observe(0, reading, target, &watch.repeated());
         watch.move(feedback_, JointVector::Constant(1, command));
         return watch.cause();
     }
     StopCause tick(double position) { return tick(position, position); }
+
+    double offset = 0; ///< of the encoder
+    bool missing = false;
 
     JointWatch watch{limits(), period_s, quantum};
 
@@ -109,6 +113,23 @@ TEST_CASE("a joint that vibrates and then sticks is not reported as frozen") {
             const double position = amplitude * std::sin(2 * std::numbers::pi * frequency_hz * time_s);
             CHECK(joint.tick(position, 0) == StopCause::none);
         }
+    }
+}
+
+TEST_CASE("an encoder's count is the smallest step of its readings, without the first one") {
+    constexpr double speed = 0.12; // rad/s, from which the joint can stop within six counts
+    Joint joint;
+    joint.offset = quantum / 20;
+    joint.missing = true;
+    CHECK(joint.tick(0) == StopCause::none);
+    joint.missing = false;
+    double position = 0;
+    for (int tick = 0; tick < 100; ++tick) {
+        position = speed * period_s * tick;
+        CHECK(joint.tick(position) == StopCause::none);
+    }
+    for (int reading = 0; reading < 20; ++reading) {
+        CHECK(joint.tick(position) == StopCause::none);
     }
 }
 
