@@ -23,9 +23,11 @@ struct MotionBounds {
 /// Proportional and derivative feedback of the joint positions, tick by tick. Every reading belongs to a
 /// tick. The velocity is estimated by the adaptive window (dfdyn::AdaptiveWindow: the longest line through at
 /// most `velocity_window` readings that deviates from none by more than `noise_bound`), with the readings'
-/// own times. The velocity across a gap is therefore the mean velocity over the gap. The reference's velocity
-/// is computed over the same window; with the present reference velocity, the readings' delay would act as an
-/// inertia.
+/// own times. A bound below the encoder's count (the smallest step so far, at most four bounds) is replaced
+/// by it: a line through a rounded reading deviates from another one by up to a count, and without this a
+/// window would sometimes have only two readings. The velocity across a gap is therefore the mean velocity
+/// over the gap. The reference's velocity is computed over the same window; with the present reference
+/// velocity, the readings' delay would act as an inertia.
 ///
 /// A joint without a reading in this tick is extrapolated by its tracking error: it follows the reference
 /// with its last error. The error's rate, limited to the joint's speed, decreases linearly to 0 within
@@ -81,6 +83,7 @@ class PositionFeedback {
     const FeedbackGains& gains() const noexcept { return gains_; }
 
   private:
+    void note_step(Eigen::Index joint, double step) noexcept;
     void push(Eigen::Index joint, std::int64_t tick, double position, double reference);
     bool plausible(Eigen::Index joint, std::int64_t tick, double position,
                    const Reference& reference) const noexcept;
@@ -105,6 +108,7 @@ class PositionFeedback {
     std::vector<std::int64_t> observed_tick_; ///< tick in which it was added
     std::vector<bool> regular_;               ///< whether the last reading directly followed the previous one
     JointVector newest_, position_, velocity_; ///< at the last readings
+    JointVector count_; ///< of the encoder, as far as it matters for the noise bound; 0: unknown
     /// reference minus reading and its rate, at the last readings
     JointVector reading_error_, reading_rate_;
 };

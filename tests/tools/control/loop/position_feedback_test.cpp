@@ -52,6 +52,26 @@ TEST_CASE("the velocity after lost readings is the average over the gap") {
     CHECK(loop.regular());
 }
 
+TEST_CASE("a noise bound of half an encoder's count causes no peaks of the velocity") {
+    constexpr double fine = 1e-4, count = 4e-4, slow = 0.75, tick_s = 0.001; // rad, rad/s, s
+    DerivativeModel filter;
+    filter.velocity_window = 20;
+    filter.noise_bound = count / 2;
+    PositionFeedback loop({JointVector::Constant(1, kp), JointVector::Constant(1, kd)}, filter, tick_s);
+    const auto rounded = [](double value, double step) { return step * std::round(value / step); };
+    for (int tick = 0; tick < 10000; ++tick) {
+        const double time_s = tick_s * tick;
+        const double velocity = slow * std::sin(time_s);
+        const double truth = slow * (1 - std::cos(time_s));
+        const JointVector reading = JointVector::Constant(1, rounded(rounded(truth, fine), count));
+        loop.advance();
+        loop.observe(0, reading, {JointVector::Constant(1, truth), JointVector::Constant(1, velocity), {}});
+        if (tick > 10) {
+            REQUIRE(loop.velocity()[0] == Approx(velocity).margin(0.06));
+        }
+    }
+}
+
 TEST_CASE("an older reading gives the torque of the present tick whatever its age") {
     for (const int age : {1, 2, 5}) {
         PositionFeedback loop = after(20);
