@@ -8,17 +8,11 @@
 
 namespace dfdyn::tools {
 
-namespace {
-
-constexpr double mean_readings = 10; ///< memory of the mean velocity
-
-} // namespace
-
 JointWatch::JointWatch(SafeStopConfig config, double period_s, double noise_bound)
     : config_(std::move(config)), period_s_(period_s), noise_bound_(noise_bound) {
     const Eigen::Index joints = config_.following_error.size();
     const auto count = static_cast<std::size_t>(joints);
-    speed_ = mean_velocity_ = lowest_ = highest_ = quantum_ = pressing_position_ = JointVector::Zero(joints);
+    speed_ = mean_velocity_ = lowest_ = highest_ = pressing_position_ = JointVector::Zero(joints);
     reading_ = JointVector::Constant(joints, std::numeric_limits<double>::quiet_NaN());
     same_.resize(count);
     stuck_.resize(count);
@@ -34,7 +28,7 @@ void JointWatch::found(StopCause cause, Eigen::Index joint) noexcept {
     }
 }
 
-bool JointWatch::must_have_moved(Eigen::Index joint) const noexcept {
+bool JointWatch::must_have_moved(Eigen::Index joint, double count) const noexcept {
     if (config_.acceleration.size() == 0) {
         return false;
     }
@@ -42,18 +36,24 @@ bool JointWatch::must_have_moved(Eigen::Index joint) const noexcept {
     const double acceleration = braking_share * config_.acceleration[joint];
     const double time_s = std::min(period_s_ * same_[static_cast<std::size_t>(joint)],
                                    speed_[joint] / acceleration); // it may have stopped after this time
-    return time_s * (speed_[joint] - acceleration * time_s / 2) > 2 * quantum_[joint] + 4 * noise_bound_;
+    return time_s * (speed_[joint] - acceleration * time_s / 2) > 2 * count + 4 * noise_bound_;
 }
 
-void JointWatch::repeat(Eigen::Index joint, double reference, double speed) noexcept {
+double JointWatch::steady_speed(Eigen::Index joint, double velocity) const noexcept {
+    const double mean = mean_velocity_[joint];
+    return velocity * mean > 0 ? std::min(std::abs(velocity), std::abs(mean)) : 0;
+}
+
+void JointWatch::repeat(Eigen::Index joint, double reference, const PositionFeedback& feedback) noexcept {
     const auto j = static_cast<std::size_t>(joint);
+    const double count = feedback.smallest_step(joint);
     if (same_[j]++ == 0) {
-        speed_[joint] = speed;
+        speed_[joint] = steady_speed(joint, feedback.velocity()[joint]);
     }
     lowest_[joint] = std::min(lowest_[joint], reference);
     highest_[joint] = std::max(highest_[joint], reference);
-    const double tolerance = std::max(config_.following_error[joint] / 16, 8 * quantum_[joint]);
-    repeated_[j] = repeated_[j] || must_have_moved(joint);
+    const double tolerance = std::max(config_.following_error[joint] / 16, 8 * count);
+    repeated_[j] = repeated_[j] || must_have_moved(joint, count);
     stuck_[j] = repeated_[j] || highest_[joint] - lowest_[joint] > tolerance ? stuck_[j] + 1 : 0;
     if (stuck_[j] > config_.frozen_patience) {
         found(StopCause::frozen_encoder, joint);
@@ -62,21 +62,16 @@ void JointWatch::repeat(Eigen::Index joint, double reference, double speed) noex
 
 void JointWatch::read(const JointVector& position, const JointVector& reference,
                       const PositionFeedback& feedback, const std::vector<bool>& missing) {
+    constexpr double mean_readings = 10; // memory of the mean velocity
     for (Eigen::Index joint = 0; joint < position.size(); ++joint) {
         const auto j = static_cast<std::size_t>(joint);
         if (missing[j]) {
             continue;
         }
-        const double step = std::abs(position[joint] - reading_[joint]); // NaN for the first reading
-        const double velocity = feedback.velocity()[joint];
-        mean_velocity_[joint] += (velocity - mean_velocity_[joint]) / mean_readings;
-        if (step == 0) {
-            const double steady = std::min(std::abs(velocity), std::abs(mean_velocity_[joint]));
-            repeat(joint, reference[joint], velocity * mean_velocity_[joint] > 0 ? steady : 0);
+        mean_velocity_[joint] += (feedback.velocity()[joint] - mean_velocity_[joint]) / mean_readings;
+        if (position[joint] == reading_[joint]) {
+            repeat(joint, reference[joint], feedback);
             continue;
-        }
-        if (step > 0) {
-            quantum_[joint] = quantum_[joint] > 0 ? std::min(step, quantum_[joint]) : step;
         }
         reading_[joint] = position[joint];
         lowest_[joint] = highest_[joint] = reference[joint];

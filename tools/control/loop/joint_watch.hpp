@@ -50,15 +50,15 @@ class JointWatch {
 
   private:
     void found(StopCause cause, Eigen::Index joint) noexcept;
-    void repeat(Eigen::Index joint, double reference, double speed) noexcept;
-    bool must_have_moved(Eigen::Index joint) const noexcept;
+    void repeat(Eigen::Index joint, double reference, const PositionFeedback& feedback) noexcept;
+    double steady_speed(Eigen::Index joint, double velocity) const noexcept;
+    bool must_have_moved(Eigen::Index joint, double count) const noexcept;
 
     SafeStopConfig config_;
     double period_s_, noise_bound_;
     JointVector reading_, speed_; ///< at the last change of the reading; NaN before the first
     JointVector mean_velocity_;
     JointVector lowest_, highest_;                    ///< range of the reference since then
-    JointVector quantum_;                             ///< smallest step so far; 0 before the first
     JointVector pressing_position_;                   ///< position when the command reached its limit
     std::vector<int> same_, stuck_, fast_, pressing_; ///< successive readings or ticks, per joint
     std::vector<bool> repeated_;

@@ -120,9 +120,9 @@ void LearnedFeedForward::learn(std::int64_t time_ns, const double* position, con
     const std::span<const double> output = torque != nullptr ? of_joints(torque) : std::span<const double>();
     const MeasuredSample sample{time_ns, of_joints(position), {}, {}, output};
     const Status status = learner_.learn(sample);
+    const bool touched = contact_joint() >= 0;
     for (Learner& physics : physics_) { // does not learn a contact, either
-        physics.learn(contact_joint() < 0 ? sample
-                                          : MeasuredSample{time_ns, of_joints(position), {}, {}, {}});
+        physics.learn(touched ? MeasuredSample{time_ns, of_joints(position), {}, {}, {}} : sample);
     }
     counters_.samples += torque != nullptr ? 1 : 0;
     if (learns(status)) {

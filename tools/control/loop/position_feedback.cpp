@@ -24,20 +24,22 @@ PositionFeedback::PositionFeedback(FeedbackGains gains, const DerivativeModel& f
     newest_tick_.assign(count, std::numeric_limits<std::int32_t>::min());
     observed_tick_ = newest_tick_;
     regular_.resize(count);
-    newest_ = velocity_ = reading_error_ = reading_rate_ = count_ = JointVector::Zero(joints);
+    newest_ = velocity_ = reading_error_ = reading_rate_ = smallest_step_ = JointVector::Zero(joints);
 }
 
-void PositionFeedback::note_step(Eigen::Index joint, double step) noexcept {
+double PositionFeedback::noise_bound(Eigen::Index joint) const noexcept {
     constexpr double largest_count = 4; // noise bounds; a larger step is motion
-    if (step > 0 && step <= largest_count * filter_.noise_bound) {
-        count_[joint] = count_[joint] > 0 ? std::min(step, count_[joint]) : step;
-    }
+    const double step = smallest_step_[joint];
+    return step <= largest_count * filter_.noise_bound ? std::max(filter_.noise_bound, step)
+                                                       : filter_.noise_bound;
 }
 
 void PositionFeedback::push(Eigen::Index joint, std::int64_t tick, double position, double reference) {
     const auto j = static_cast<std::size_t>(joint);
     const auto first = static_cast<std::ptrdiff_t>(j) * window_;
-    note_step(joint, held_[j] > 0 ? std::abs(position - newest_[joint]) : 0);
+    if (const double step = std::abs(position - newest_[joint]); held_[j] > 0 && step > 0) {
+        smallest_step_[joint] = smallest_step_[joint] > 0 ? std::min(step, smallest_step_[joint]) : step;
+    }
     const auto age = [&](auto& values) {
         std::copy_backward(values.begin() + first, values.begin() + first + window_ - 1,
                            values.begin() + first + window_);
@@ -58,7 +60,7 @@ void PositionFeedback::push(Eigen::Index joint, std::int64_t tick, double positi
     }
     if (count > 1) {
         const AdaptiveWindow<double> window(time_.data(), reading_.data() + first, 1, count,
-                                            std::max(filter_.noise_bound, count_[joint]));
+                                            noise_bound(joint));
         velocity_[joint] = window.velocity();
         reading_rate_[joint] = window.slope_of(reference_.data() + first) - velocity_[joint];
     }

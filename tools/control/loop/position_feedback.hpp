@@ -68,6 +68,8 @@ class PositionFeedback {
     const JointVector& position() const noexcept { return position_; }
     /// Velocity at the last readings, rad/s.
     const JointVector& velocity() const noexcept { return velocity_; }
+    /// Smallest step between two successive readings of `joint` so far, rad: its encoder's count. 0: none.
+    double smallest_step(Eigen::Index joint) const noexcept { return smallest_step_[joint]; }
     /// Ticks since the last reading of `joint`.
     std::int64_t age(Eigen::Index joint) const noexcept {
         return tick_ - newest_tick_[static_cast<std::size_t>(joint)];
@@ -83,7 +85,7 @@ class PositionFeedback {
     const FeedbackGains& gains() const noexcept { return gains_; }
 
   private:
-    void note_step(Eigen::Index joint, double step) noexcept;
+    double noise_bound(Eigen::Index joint) const noexcept;
     void push(Eigen::Index joint, std::int64_t tick, double position, double reference);
     bool plausible(Eigen::Index joint, std::int64_t tick, double position,
                    const Reference& reference) const noexcept;
@@ -108,7 +110,7 @@ class PositionFeedback {
     std::vector<std::int64_t> observed_tick_; ///< tick in which it was added
     std::vector<bool> regular_;               ///< whether the last reading directly followed the previous one
     JointVector newest_, position_, velocity_; ///< at the last readings
-    JointVector count_; ///< of the encoder, as far as it matters for the noise bound; 0: unknown
+    JointVector smallest_step_;
     /// reference minus reading and its rate, at the last readings
     JointVector reading_error_, reading_rate_;
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace joint_watch_test {
 
@@ -34,15 +35,17 @@ class Joint {
                                JointVector::Zero(1)};
         feedback_.advance();
         watch.read(reading, target.position, feedback_, {missing});
-        feedback_.observe(0, reading, target, &watch.repeated());
-        watch.move(feedback_, JointVector::Constant(1, command));
+        const std::vector<bool> unused{missing || watch.repeated()[0]};
+        feedback_.observe(0, reading, target, &unused);
+        if (feedback_.position().size() > 0) {
+            watch.move(feedback_, JointVector::Constant(1, command));
+        }
         return watch.cause();
     }
     StopCause tick(double position) { return tick(position, position); }
 
-    double offset = 0; ///< of the encoder
-    bool missing = false;
-
+    double offset = 0;    ///< of the encoder
+    bool missing = false; ///< no reading in this tick
     JointWatch watch{limits(), period_s, quantum};
 
   private:
