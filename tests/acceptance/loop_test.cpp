@@ -74,7 +74,7 @@ Recording commissioning(const Setting& setting) {
     return recording;
 }
 
-LoopModel trained(const Setting& setting, int features = 30, const Structure& structure = structures::SPK) {
+LoopModel trained(const Setting& setting, const Structure& structure = structures::SPK, int features = 30) {
     ModelTraining training;
     TrainingOptions& options = training.options;
     options.model = &structure;
@@ -121,7 +121,7 @@ void check_tracking(const Setting& arm) {
     const TrackingRun nominal_run = tracked(arm, "nominal", nullptr, without_observer());
     const TrackingRun observer_run = tracked(arm, "observer", nullptr, {});
     const TrackingRun learned_run = tracked(arm, "learned", &model, {});
-    const LoopModel physics = trained(arm, 30, structures::P);
+    const LoopModel physics = trained(arm, structures::P);
     const TrackingRun least_squares_run = tracked(arm, "least squares with observer", &physics, {});
     REQUIRE(nominal_run.windows.size() == 19);
     for (std::size_t window = 0; window < nominal_run.windows.size(); ++window) {
@@ -268,7 +268,7 @@ TEST_CASE(
     "has tripled",
     "[.long]") {
     Setting arm = icub_loop();
-    const LoopModel model = trained(arm, 60);
+    const LoopModel model = trained(arm, structures::SPK, 60);
     arm.scenario.faults = with_fault(ur5_loop(), "friction_step").faults;
     check_later_seconds(arm, model, {31, 2101}, 3e-3);
 }

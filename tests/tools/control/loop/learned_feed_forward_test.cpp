@@ -37,15 +37,29 @@ JointVector torque(const JointVector& position) {
     return result;
 }
 
+/// Learns the measured `torque` of two joints at the motion's `tick`, in `ticks` slices.
+void learn_sample(LearnedFeedForward& feed_forward, int tick, const double* torque, int ticks,
+                  std::int64_t sample_period = period) {
+    feed_forward.learn(tick * sample_period, position(tick).data(), torque);
+    for (int slice = 1; slice < ticks; ++slice) {
+        feed_forward.go_on();
+    }
+}
+
 /// Learns `count` samples of the motion, each in `ticks` slices.
 void learn(LearnedFeedForward& feed_forward, int first, int count, int ticks) {
     for (int tick = first; tick < first + count; ++tick) {
-        const JointVector measured = torque(position(tick));
-        feed_forward.learn(tick * period, position(tick).data(), measured.data());
-        for (int slice = 1; slice < ticks; ++slice) {
-            feed_forward.go_on();
-        }
+        learn_sample(feed_forward, tick, torque(position(tick)).data(), ticks);
     }
+}
+
+constexpr std::int64_t physics_period = 4'000'000; ///< of `physics_model`
+
+/// A model of features, whose part is no larger than the noise, and of physics.
+TrainedModel physics_model(std::mt19937_64& engine) {
+    TrainedModel model = dfdyn::tests::small_physics_model(engine, "SPK", InputKind::DFR, /*wrench=*/false);
+    model.outputs.prior_variance = 1;
+    return model;
 }
 
 /// Returns the predictions along the motion.
@@ -143,22 +157,16 @@ TEST_CASE("a sample without torque is not learned but its position enters the wi
 
 TEST_CASE("the forecast of the physics alone follows a change of the arm before the whole model's") {
     DFDYN_SEEDED_ENGINE(engine);
-    TrainedModel model = dfdyn::tests::small_physics_model(engine, "SPK", InputKind::DFR, /*wrench=*/false);
-    model.outputs.prior_variance = 1; // the features' part is no larger than the noise
-    LearnedFeedForward feed_forward(model, true, 2, 4, "model");
+    LearnedFeedForward feed_forward(physics_model(engine), true, 2, 4, "model");
     REQUIRE(feed_forward.forecast_count() == 3);
     CHECK(LearnedFeedForward(model_of(engine), true, 2, 4, "model").forecast_count() == 1);
-    constexpr std::int64_t model_period = 4'000'000;
     constexpr double load = 5;
     std::array<double, 6> predicted{}; // the whole model, then the physics with a short and a long memory
     feed_forward.begin(0, position(0).data());
     for (int tick = 1; tick <= 2250; ++tick) { // at 2000 the load of joint 2 changes its sign
         const std::array<double, 2> measured{0, tick <= 2000 ? load : -load};
-        feed_forward.learn(tick * model_period, position(tick).data(), measured.data());
-        for (int slice = 1; slice < 4; ++slice) {
-            feed_forward.go_on();
-        }
-        REQUIRE(feed_forward.predict(tick * model_period, position(tick).data(), predicted.data()));
+        learn_sample(feed_forward, tick, measured.data(), 4, physics_period);
+        REQUIRE(feed_forward.predict(tick * physics_period, position(tick).data(), predicted.data()));
     }
     CHECK(predicted[3] < -0.3 * load);
     CHECK(predicted[1] > predicted[3] + 0.5 * load);
@@ -167,10 +175,7 @@ TEST_CASE("the forecast of the physics alone follows a change of the arm before 
 
 TEST_CASE("of an unchanged arm's noisy torque a long memory of the physics is better than a short one") {
     DFDYN_SEEDED_ENGINE(engine);
-    TrainedModel model = dfdyn::tests::small_physics_model(engine, "SPK", InputKind::DFR, /*wrench=*/false);
-    model.outputs.prior_variance = 1;
-    LearnedFeedForward feed_forward(model, true, 2, 4, "model");
-    constexpr std::int64_t model_period = 4'000'000;
+    LearnedFeedForward feed_forward(physics_model(engine), true, 2, 4, "model");
     constexpr double load = 5;
     std::normal_distribution<double> noise(0, 1);
     std::array<double, 6> predicted{};
@@ -179,11 +184,8 @@ TEST_CASE("of an unchanged arm's noisy torque a long memory of the physics is be
     feed_forward.begin(0, position(0).data());
     for (int tick = 1; tick <= 6000; ++tick) {
         const std::array<double, 2> measured{noise(engine), load + noise(engine)};
-        feed_forward.learn(tick * model_period, position(tick).data(), measured.data());
-        for (int slice = 1; slice < 4; ++slice) {
-            feed_forward.go_on();
-        }
-        REQUIRE(feed_forward.predict(tick * model_period, position(tick).data(), predicted.data()));
+        learn_sample(feed_forward, tick, measured.data(), 4, physics_period);
+        REQUIRE(feed_forward.predict(tick * physics_period, position(tick).data(), predicted.data()));
         short_memory += tick > 3000 ? std::pow(predicted[3] - load, 2) : 0;
         long_memory += tick > 3000 ? std::pow(predicted[5] - load, 2) : 0;
     }
@@ -193,30 +195,25 @@ TEST_CASE("of an unchanged arm's noisy torque a long memory of the physics is be
 
 TEST_CASE("forecasts of a reference out of range and those beyond the model's bounds are NaN") {
     DFDYN_SEEDED_ENGINE(engine);
-    constexpr std::int64_t model_period = 4'000'000;
-    TrainedModel model = dfdyn::tests::small_physics_model(engine, "SPK", InputKind::DFR, /*wrench=*/false);
-    model.outputs.prior_variance = 1;
+    TrainedModel model = physics_model(engine);
     model.limits.prediction = {0, 2}; // N·m; joint 1 has no bound
     LearnedFeedForward learned(model, true, 2, 4, "model");
     learned.begin(0, position(0).data());
     for (int tick = 1; tick <= 2000; ++tick) {
         const std::array<double, 2> measured{0, 5};
-        learned.learn(tick * model_period, position(tick).data(), measured.data());
-        for (int slice = 1; slice < 4; ++slice) {
-            learned.go_on();
-        }
+        learn_sample(learned, tick, measured.data(), 4, physics_period);
     }
     LearnedFeedForward restored(model, true, 2, 4, "model"); // its physics alone have learned nothing
     REQUIRE(restored.restore(learned.snapshot()));
     restored.begin(0, position(0).data());
     std::array<double, 6> predicted{};
-    REQUIRE(restored.predict(model_period, position(1).data(), predicted.data()));
+    REQUIRE(restored.predict(physics_period, position(1).data(), predicted.data()));
     CHECK((std::isnan(predicted[0]) && std::isnan(predicted[1])));
     CHECK(std::all_of(predicted.begin() + 2, predicted.end(),
                       [](double value) { return std::isfinite(value); }));
     CHECK(restored.counters().reference_unknown == 0);
     const std::array<double, 2> absurd{1e9, 0};
-    CHECK_FALSE(restored.predict(2 * model_period, absurd.data(), predicted.data()));
+    CHECK_FALSE(restored.predict(2 * physics_period, absurd.data(), predicted.data()));
     CHECK(std::ranges::all_of(predicted, [](double value) { return std::isnan(value); }));
     CHECK(restored.counters().reference_unknown == 1);
 }
