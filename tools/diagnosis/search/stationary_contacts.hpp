@@ -37,8 +37,7 @@ struct StationaryContact {
 /// Limits:
 /// - A contact that persists is not detected, because static friction can leave a step, too.
 /// - Joints whose dry friction is unknown (less than four standard deviations) have no result.
-/// - More than three uncertain contacts at a joint (probability below 0.95) are taken as its usual
-/// deviations.
+/// - More than three uncertain contacts at a joint (probability below 0.95) count as its usual deviations.
 /// - Static friction is assumed equal to sliding friction unless a static level was identified.
 /// - A wrench has no result.
 ///
