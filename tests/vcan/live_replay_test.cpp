@@ -38,7 +38,8 @@ long lines(const std::filesystem::path& path) {
 } // namespace
 
 TEST_CASE("the output of a killed live replay is complete except for its last line") {
-    const IcubLog log(100, 100); // 1 s
+    // 0.6 s, which fit into a socket's buffer: a machine that stalls loses no frame
+    const IcubLog log(60, 100);
     const auto csv = log.directory.path() / "out.csv";
     const auto record = log.directory.path() / "recorded.log";
     const long receivers = dfdyn::tests::receivers();
@@ -50,8 +51,8 @@ TEST_CASE("the output of a killed live replay is complete except for its last li
     CHECK(dfdyn::tests::wait_for_receivers(receivers));
     dfdyn::tests::run(std::string(DFDYN_PROGRAM) + " play --log " + log.path.string() + " --can vcan0");
     // It flushes both files four times a second.
-    constexpr long frames = 4 * 100 + 6;
-    CHECK(dfdyn::tests::wait_for([&] { return lines(csv) > 90 && lines(record) >= frames; }));
+    constexpr long frames = 4 * 60 + 6;
+    CHECK(dfdyn::tests::wait_for([&] { return lines(csv) > 50 && lines(record) >= frames; }));
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
 
