@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/loop_setup.hpp"
 
-#include "dfdyn/control/loop_margin.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/can/arm/bus_wire.hpp"
 #include "tools/can/arm/device_frames.hpp"
 #include "tools/can/arm/torque_frames.hpp"
-
-#include <Eigen/LU>
+#include "tools/control/observer_bandwidth.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 
 namespace dfdyn::tools {
 
@@ -89,6 +86,7 @@ double bus_load(const BusDescription& bus) {
 SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, const JointVector& torque_limit,
                               const JointVector& start) {
     constexpr double following_share = 0.8, largest_angle_rad = 0.5, largest_way_m = 0.1;
+    constexpr double sticking_share = 0.25; // friction in both directions
     constexpr double acceleration_margin = 2, largest_speed = 100;
     constexpr double pressing_s = 0.25, brake_s = 0.2;
     const ControllerModel& controller = scenario.controller;
@@ -99,7 +97,7 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
     SafeStopConfig config;
     config.torque_limit = torque_limit;
     config.acceleration = acceleration_margin * torque_limit.cwiseQuotient(inertia);
-    config.following_error = config.speed_limit = JointVector(torque_limit.size());
+    config.following_error = config.sticking = config.speed_limit = JointVector(torque_limit.size());
     for (Eigen::Index i = 0; i < torque_limit.size(); ++i) {
         const RobotJoint& joint = robot.joints[static_cast<std::size_t>(i)];
         const double gain = controller.position_gain[i];
@@ -107,6 +105,8 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
         const double speed = joint.velocity.value_or(0);
         config.following_error[i] =
             gain > 0 ? std::min(largest, following_share * torque_limit[i] / gain) : largest;
+        config.sticking[i] =
+            gain > 0 ? sticking_share * torque_limit[i] / gain : std::numeric_limits<double>::infinity();
         config.speed_limit[i] =
             speed > 0 && speed <= largest_speed ? speed : std::numeric_limits<double>::infinity();
     }
@@ -119,71 +119,7 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
     return config;
 }
 
-/// Inertia of each joint (links and rotor), kg·m² or kg.
-struct InertiaRange {
-    JointVector start; ///< with the other joints locked, at the start of the motion
-    JointVector least; ///< smallest during the motion, with the other joints free to give way
-    JointVector most;  ///< largest during the motion, with the other joints locked
-};
-
-/// Evaluates the first 20 s of the motion, four times per second.
-InertiaRange inertia_of_motion(const Robot& robot, const Scenario& scenario) {
-    constexpr double duration_s = 20, step_s = 0.25;
-    const double rate_hz = scenario.controller.rate_hz;
-    const auto ticks = static_cast<int>(duration_s * rate_hz);
-    const int step = std::max(1, static_cast<int>(step_s * rate_hz));
-    const ArmDynamics dynamics(robot, scenario.actuators.rotor_inertia);
-    const std::unique_ptr<Task> task = make_task(scenario.task, robot, 1 / rate_hz, scenario.seed);
-    ArmDynamics::Configuration configuration;
-    InertiaRange range;
-    for (int tick = 0; tick <= ticks; ++tick) {
-        const JointVector position = task->next().position;
-        if (tick % step != 0) {
-            continue;
-        }
-        dynamics.configure(position, configuration);
-        const JointMatrix mass = dynamics.mass_matrix(configuration);
-        const JointVector locked = mass.diagonal();
-        const JointVector free = mass.inverse().diagonal().cwiseInverse();
-        if (tick == 0) {
-            range = {locked, free, locked};
-        }
-        range.least = range.least.cwiseMin(free);
-        range.most = range.most.cwiseMax(locked);
-    }
-    return range;
-}
-
-/// Returns the velocity filter with the scenario's window length, converted to readings of the loop.
-DerivativeModel loop_filter(const Scenario& scenario) {
-    DerivativeModel filter = scenario.derivatives;
-    const double readings = filter.velocity_window * scenario.controller.rate_hz / filter.rate_hz;
-    filter.velocity_window = std::max(2, static_cast<int>(std::lround(readings)));
-    filter.rate_hz = scenario.controller.rate_hz;
-    return filter;
-}
-
-JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, int delay_ticks) {
-    constexpr double margin_rad = 20 * std::numbers::pi / 180, most = 40, window_share = 0.5;
-    const ControllerModel& controller = scenario.controller;
-    const DerivativeModel filter = loop_filter(scenario);
-    const InertiaRange inertia = inertia_of_motion(robot, scenario);
-    JointVector bandwidth = inertia.start;
-    for (Eigen::Index i = 0; i < bandwidth.size(); ++i) {
-        const double start = inertia.start[i];
-        bandwidth[i] = most;
-        for (const double true_inertia :
-             {std::min(0.6 * start, inertia.least[i]), start, std::max(2 * start, inertia.most[i])}) {
-            const JointLoop<double> loop{true_inertia, controller.position_gain[i],
-                                         controller.velocity_gain[i],
-                                         (delay_ticks + 0.5) / controller.rate_hz,
-                                         window_share * filter.velocity_window / filter.rate_hz / 2};
-            bandwidth[i] =
-                std::min(bandwidth[i], LoopMargin(loop, start).largest_bandwidth(margin_rad, most));
-        }
-    }
-    return bandwidth;
-}
+namespace {
 
 JointVector given_bandwidth(const std::vector<double>& given, const Robot& robot, double rate_hz) {
     constexpr double largest_share = 0.2; // of the loop's rate
@@ -195,8 +131,6 @@ JointVector given_bandwidth(const std::vector<double>& given, const Robot& robot
     }
     return bandwidth;
 }
-
-namespace {
 
 void require_feed_forward(ControllerKind kind, const std::string& source) {
     if (kind != ControllerKind::feed_forward) {

@@ -37,21 +37,14 @@ struct LoopLimits {
 
 /// Returns the default limits of a loop with these gains and torque limits:
 /// - following error: 0.8 of the torque limit divided by the position gain; at most 0.5 rad or 0.1 m;
+/// - motion of the reference while a joint sticks: a quarter of the torque limit divided by the position
+///   gain, for friction of up to an eighth of the limit in both directions;
 /// - speed: the robot's limit; none if the robot has none, or one above 100 rad/s or m/s;
 /// - acceleration: twice the torque limit divided by the joint's own inertia (links and rotor) at the start
 ///   of the motion;
 /// - time at the torque limit: 0.25 s. Other values: SafeStopConfig.
 SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, const JointVector& torque_limit,
                               const JointVector& start);
-
-/// Returns the bandwidth of the disturbance observer, rad/s per joint: the largest one up to 40 with a phase
-/// margin of 20 degrees (dfdyn::LoopMargin) at the joint's own inertia at the start of the motion, and at 0.6
-/// and 2 times this inertia. In the first 20 s of the motion its inertia may be beyond these: larger in other
-/// postures, and smaller if the other joints give way, as for two joints with nearly parallel axes. Then the
-/// margin holds at these extremes. The delay is the bus' (`delay_ticks`), plus half a tick for holding the
-/// command, plus half the largest window of the velocity filter. Slower motion has longer windows and a
-/// smaller margin.
-JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, int delay_ticks);
 
 /// Returns the loop that a scenario describes: its task, gains and rate of its `controller` (of kind
 /// feed_forward), and filter of its `derivatives`. The torque limit is its `actuators`' or the

@@ -19,6 +19,7 @@ constexpr double none = 0;
 constexpr double step_s = 1e-5;
 constexpr JointLoop<double> joint_loop{1.5, 500, 60, 0, 0};
 constexpr double bandwidth = 40;
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// e(t) of (J s² + D s + P)(s + b) e = s · disturbance for a step of 1 N·m: the sum of three exponentials of
 /// the partial fractions.
@@ -37,7 +38,7 @@ double error_after_step(double t) {
 
 TEST_CASE("after a torque step the error has the feedback's poles and one at the bandwidth") {
     ServoJoint joint(joint_loop, step_s);
-    Observer observer({}, {step_s, {{bandwidth}}, {{100}}});
+    Observer observer({}, {step_s, {{bandwidth}}, {{100}}, {{unlimited}}});
     double largest = 0;
     double worst = 0;
     for (int i = 0; i < 100'000; ++i) {
@@ -57,7 +58,7 @@ TEST_CASE("after a torque step the error has the feedback's poles and one at the
 TEST_CASE("an estimate stays within its limit and does not wind up at the command's limit") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> size(0, 50);
-    Observer observer({}, {1e-3, {{bandwidth}}, {{3}}});
+    Observer observer({}, {1e-3, {{bandwidth}}, {{3}}, {{unlimited}}});
     for (int i = 0; i < 10'000; ++i) {
         const double feedback = size(engine);
         const double rate = size(engine);
@@ -76,8 +77,39 @@ TEST_CASE("an estimate stays within its limit and does not wind up at the comman
     CHECK(observer.estimate()[0] < 0);
 }
 
+/// Slope (N·m/s) and largest change of the estimate for a constant feedback of 1 N·m and a rate rounded to
+/// multiples of `count`, 0.01 rad/s on average.
+struct Rounded {
+    double slope, change;
+};
+Rounded after_rounding(double count, double step) {
+    constexpr double period = 1e-3, feedback = 1, inertia = 1.5;
+    Observer observer({}, {period, {{bandwidth}}, {{1e6}}, {{step}}});
+    Rounded result{0, 0};
+    double at_1_s = 0;
+    for (int tick = 0; tick < 5000; ++tick) {
+        const double rate = count * (std::floor((tick + 1) * 0.01 / count) - std::floor(tick * 0.01 / count));
+        const double before = observer.estimate()[0];
+        const double after = observer.update(&feedback, &inertia, &rate, &none)[0];
+        at_1_s = tick < 1000 ? after : at_1_s;
+        result.change = std::max(result.change, tick > 1000 ? std::abs(after - before) : 0);
+    }
+    result.slope = (observer.estimate()[0] - at_1_s) / 4;
+    return result;
+}
+
+TEST_CASE("rounded rates change an estimate by hardly more than its step") {
+    CHECK(after_rounding(0.1, unlimited).change == Approx(bandwidth * (1.5 * 0.1 + 1e-3)).epsilon(0.01));
+    const Rounded coarse = after_rounding(0.1, 0.5);
+    CHECK(coarse.change <= 1.1 * 0.5);
+    CHECK(coarse.change > 0.5);
+    // what is lost is bandwidth: feedback and rate keep their ratio
+    CHECK(coarse.slope == Approx(0.5 / (1.5 * 0.1)).epsilon(0.05));
+    CHECK(after_rounding(0.001, 0.5).slope == Approx(bandwidth).epsilon(0.05));
+}
+
 TEST_CASE("NaN inputs do not change the estimate") {
-    DisturbanceObserver<float, 2> observer({}, {0.001F, {{20, 20}}, {{5, 5}}});
+    DisturbanceObserver<float, 2> observer({}, {0.001F, {{20, 20}}, {{5, 5}}, {{5, 5}}});
     const float inertia[] = {1, 1};
     const float zero[] = {0, 0};
     const float push[] = {4, 4};

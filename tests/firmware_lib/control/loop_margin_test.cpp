@@ -34,7 +34,7 @@ JointLoop<double> random_loop(std::mt19937_64& engine) {
 std::pair<double, double> after_a_blow(const JointLoop<double>& loop, double observer_inertia,
                                        double bandwidth) {
     ServoJoint joint(loop, step_s);
-    DisturbanceObserver<double, 1> observer({}, {step_s, {{bandwidth}}, {{1e9}}});
+    DisturbanceObserver<double, 1> observer({}, {step_s, {{bandwidth}}, {{1e9}}, {{1e9}}});
     joint.advance(1e-3 * loop.inertia / step_s);
     std::pair<double, double> largest{0, 0};
     constexpr int steps = static_cast<int>(10 / step_s);

@@ -111,7 +111,7 @@ TEST_CASE("a simulated loop that stops by itself ends with status 1 and the reas
     const Bench bench("\"position_gain\": [25, 12]", "\"position_gain\": [-25, -12]");
     const Outcome outcome = bench.loop(simulate + bus);
     CHECK(outcome.status == 1);
-    CHECK_THAT(outcome.out, ContainsSubstring("stopped (following_error)"));
+    CHECK_THAT(outcome.out, ContainsSubstring("stopped (following_error of joint 2)"));
     CHECK_THAT(outcome.out, !ContainsSubstring("tracking error"));
     const auto json = nlohmann::json::parse(bench.loop(simulate + bus + " --json").out);
     CHECK(json.at("stopped") == true);
@@ -144,7 +144,7 @@ TEST_CASE("given limits stop a loop that exceeds them and invalid limits are rej
     const Bench bench;
     const Outcome error = bench.loop(simulate + bus + " --following-error 0.0001");
     CHECK(error.status == 1);
-    CHECK_THAT(error.out, ContainsSubstring("stopped (following_error)"));
+    CHECK_THAT(error.out, ContainsSubstring("stopped (following_error of joint 2)"));
     const Outcome speed = bench.loop(simulate + bus + " --speed-limit 20,0.1 --stop limp");
     CHECK(speed.status == 1);
     CHECK_THAT(speed.out, ContainsSubstring("stopped (overspeed of joint 2)"));

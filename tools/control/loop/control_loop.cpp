@@ -22,15 +22,11 @@ bool opposed(StopCause cause, const std::optional<TakenAction>& stop) {
 }
 
 DisturbanceObserver<double, dynamic> make_observer(const LoopConfig& config) {
-    const auto joints = static_cast<int>(config.torque_limit.size());
-    DisturbanceObserver<double, dynamic>::Settings settings{config.period_s,
-                                                            Storage<double, dynamic>::zeros({joints}),
-                                                            Storage<double, dynamic>::zeros({joints})};
-    for (int k = 0; k < joints && config.bandwidth.size() > 0; ++k) {
-        settings.bandwidth[k] = config.bandwidth[k];
-        settings.limit[k] = ControlLoop::observer_share * config.torque_limit[k];
-    }
-    return {{joints}, settings};
+    const JointVector& limit = config.torque_limit;
+    const bool none = config.bandwidth.size() == 0;
+    return {{static_cast<int>(limit.size())},
+            {config.period_s, torques(none ? JointVector::Zero(limit.size()) : config.bandwidth),
+             torques(ControlLoop::observer_share * limit), torques(ControlLoop::observer_step * limit)}};
 }
 
 } // namespace
@@ -39,11 +35,11 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
     : config_(std::move(config)), feed_forward_(std::move(feed_forward)),
       feedback_(config_.gains, config_.filter, config_.period_s,
                 {config_.safe_stop.speed_limit, config_.safe_stop.acceleration}),
-      clock_(std::llround(config_.period_s * 1e9)),
-      watch_(config_.safe_stop, config_.period_s, config_.filter.noise_bound), safe_stop_(config_.safe_stop),
-      task_(std::move(task), config_.period_s), observer_(make_observer(config_)),
-      zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_), command_(zero_), excess_(zero_),
-      feedback_torque_(zero_), missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()) {
+      clock_(std::llround(config_.period_s * 1e9)), watch_(config_.safe_stop, config_.period_s),
+      safe_stop_(config_.safe_stop), task_(std::move(task), config_.period_s),
+      observer_(make_observer(config_)), zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_),
+      command_(zero_), excess_(zero_), feedback_torque_(zero_),
+      missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()) {
     references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
     references_.front() = task_.next();
     commands_.resize(static_cast<std::size_t>(config_.delay_ticks) + 1);
@@ -71,7 +67,7 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
     const StopCause joint = watch_.cause() == StopCause::none && found ? StopCause::finding : watch_.cause();
     const LoopState state =
         safe_stop_.tick({feedback_.complete(), input.deadline_missed, input.bus_lost, input.stop_requested,
-                         input.returning, joint, feedback_.longest_silence()},
+                         input.returning, joint, feedback_.longest_silence(), watch_.joint()},
                         yields_ ? zero_ : error_);
     if (state == LoopState::running) {
         follow();
@@ -129,7 +125,7 @@ void ControlLoop::follow() {
         command_ = unlimited = slowly(compliant_torque());
     } else {
         const JointVector wanted = feedback_.torque() + disturbance();
-        command_ = forward + after_gap(wanted);
+        command_ = forward + gradually(wanted);
         unlimited = forward + wanted;
     }
     limit();
@@ -235,16 +231,16 @@ JointVector ControlLoop::disturbance() {
     return Eigen::Map<const Eigen::VectorXd>(observer_.estimate().data(), zero_.size());
 }
 
-JointVector ControlLoop::after_gap(const JointVector& wanted) {
+JointVector ControlLoop::gradually(const JointVector& wanted) {
     if (moved() && !feedback_.regular()) {
         recovery_ = recovery_ticks;
     }
-    if (recovery_ == 0 || counters_.running == 1) {
+    if (counters_.running == 1) {
         return wanted;
     }
-    const JointVector step = feedback_step * config_.torque_limit;
+    const JointVector step = (recovery_ > 0 ? recovery_step : feedback_step) * config_.torque_limit;
     JointVector limited = wanted.cwiseMin(feedback_torque_ + step).cwiseMax(feedback_torque_ - step);
-    recovery_ -= limited == wanted ? 1 : 0;
+    recovery_ -= recovery_ > 0 && limited == wanted ? 1 : 0;
     return limited;
 }
 

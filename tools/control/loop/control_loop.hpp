@@ -58,12 +58,14 @@ struct LoopCounters {
 /// Running: the loop starts when the arm has positions and is at the beginning of the reference. The
 /// feed-forward uses times on the loop's own grid and learns from the commands, so that a wrong torque sensor
 /// does not degrade the tracking. The disturbance observer compensates the error of the feed-forward, at most
-/// `observer_share` of the torque limit. It holds its value while positions are missing.
+/// `observer_share` of the torque limit; noise of the readings changes it by about `observer_step` of the
+/// limit per tick at most. It holds its value while positions are missing.
 ///
-/// After a tick that was not regular (see PositionFeedback), the feedback's torque changes by at most
-/// `feedback_step` of the torque limit per tick. The limitation ends after `recovery_ticks` successive
-/// regular ticks that did not need it. It blends in the correction at the first reading after a gap. It acts
-/// for a few ticks only and does not change the loop's gain and phase while ticks are regular.
+/// The torque of feedback and observer changes by at most `feedback_step` of the torque limit per tick: a
+/// wrong reading that a joint could have reached makes no kick. After a tick that was not regular (see
+/// PositionFeedback) it changes by at most `recovery_step`, which blends in the correction at the first
+/// reading after a gap, until `recovery_ticks` successive regular ticks did not need it. A loop whose
+/// commands change less keeps its gain and phase.
 ///
 /// A contact (LoopConfig::on_contact) stops the motion on its path (PausableTask); the loop never resumes it
 /// by itself. The command changes by at most a torque limit per `stop_time_s`. Its new value is the gravity
@@ -92,8 +94,9 @@ struct LoopCounters {
 /// The torque ends `brake_ticks` later, in StopMode::limp only.
 class ControlLoop {
   public:
-    static constexpr double feedback_step = 0.05;
+    static constexpr double feedback_step = 0.1, recovery_step = 0.05;
     static constexpr double observer_share = 0.3;
+    static constexpr double observer_step = 0.04;
     static constexpr int recovery_ticks = 10;
     static constexpr double stop_time_s = 0.1;
     static constexpr int damping_ticks = 5;
@@ -109,8 +112,8 @@ class ControlLoop {
 
     LoopState state() const noexcept { return safe_stop_.state(); }
     StopCause cause() const noexcept { return safe_stop_.cause(); }
-    /// Joint (from 0) that caused overspeed, torque_limit or frozen_encoder.
-    Eigen::Index stopped_by() const noexcept { return watch_.joint(); }
+    /// Joint (from 0) that caused following_error, overspeed, torque_limit or frozen_encoder.
+    std::optional<Eigen::Index> stopped_by() const noexcept { return safe_stop_.joint(); }
     /// Reactions to findings and contacts except `report`; the first 64, and the one that stops the loop.
     const std::vector<TakenAction>& actions() const noexcept { return actions_.list(); }
     /// Reaction that stops the loop; empty: none.
@@ -160,8 +163,8 @@ class ControlLoop {
     JointVector compliant_torque();
     /// Returns `torque`, limited to a change of a torque limit per `stop_time_s` since the last command.
     JointVector slowly(const JointVector& torque) const;
-    /// Limits the change of the feedback and observer torque `wanted` after a gap.
-    JointVector after_gap(const JointVector& wanted);
+    /// Limits the change of the feedback and observer torque `wanted`.
+    JointVector gradually(const JointVector& wanted);
     JointVector disturbance();
     /// Returns the command in effect at the time of this tick's measurement. Null before the first one, and
     /// if the command was limited or resulted from missing positions.

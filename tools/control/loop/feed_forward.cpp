@@ -8,17 +8,15 @@
 
 namespace dfdyn::tools {
 
-namespace {
-
-using Torques = Storage<double, dynamic>;
-
-Torques torques(const JointVector& values) {
-    Torques result = Torques::zeros({static_cast<int>(values.size())});
+Storage<double, dynamic> torques(const JointVector& values) {
+    auto result = Storage<double, dynamic>::zeros({static_cast<int>(values.size())});
     std::ranges::copy(values, result.begin());
     return result;
 }
 
-JointVector joint_vector(const Torques& values) {
+namespace {
+
+JointVector joint_vector(const Storage<double, dynamic>& values) {
     return Eigen::Map<const Eigen::VectorXd>(values.data(), values.size());
 }
 

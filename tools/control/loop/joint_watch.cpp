@@ -8,8 +8,8 @@
 
 namespace dfdyn::tools {
 
-JointWatch::JointWatch(SafeStopConfig config, double period_s, double noise_bound)
-    : config_(std::move(config)), period_s_(period_s), noise_bound_(noise_bound) {
+JointWatch::JointWatch(SafeStopConfig config, double period_s)
+    : config_(std::move(config)), period_s_(period_s) {
     const Eigen::Index joints = config_.following_error.size();
     const auto count = static_cast<std::size_t>(joints);
     speed_ = mean_velocity_ = lowest_ = highest_ = pressing_position_ = JointVector::Zero(joints);
@@ -28,7 +28,7 @@ void JointWatch::found(StopCause cause, Eigen::Index joint) noexcept {
     }
 }
 
-bool JointWatch::must_have_moved(Eigen::Index joint, double count) const noexcept {
+bool JointWatch::must_have_moved(Eigen::Index joint, double tolerance) const noexcept {
     if (config_.acceleration.size() == 0) {
         return false;
     }
@@ -36,7 +36,7 @@ bool JointWatch::must_have_moved(Eigen::Index joint, double count) const noexcep
     const double acceleration = braking_share * config_.acceleration[joint];
     const double time_s = std::min(period_s_ * same_[static_cast<std::size_t>(joint)],
                                    speed_[joint] / acceleration); // it may have stopped after this time
-    return time_s * (speed_[joint] - acceleration * time_s / 2) > 2 * count + 4 * noise_bound_;
+    return time_s * (speed_[joint] - acceleration * time_s / 2) > tolerance;
 }
 
 double JointWatch::steady_speed(Eigen::Index joint, double velocity) const noexcept {
@@ -52,9 +52,9 @@ void JointWatch::repeat(Eigen::Index joint, double reference, const PositionFeed
     }
     lowest_[joint] = std::min(lowest_[joint], reference);
     highest_[joint] = std::max(highest_[joint], reference);
-    const double tolerance = std::max(config_.following_error[joint] / 16, 8 * count);
-    repeated_[j] = repeated_[j] || must_have_moved(joint, count);
-    stuck_[j] = repeated_[j] || highest_[joint] - lowest_[joint] > tolerance ? stuck_[j] + 1 : 0;
+    repeated_[j] = repeated_[j] || must_have_moved(joint, 2 * count + 4 * feedback.noise_bound(joint));
+    const bool left = highest_[joint] - lowest_[joint] > std::max(config_.sticking[joint], 8 * count);
+    stuck_[j] = repeated_[j] || left ? stuck_[j] + 1 : 0;
     if (stuck_[j] > config_.frozen_patience) {
         found(StopCause::frozen_encoder, joint);
     }

@@ -17,15 +17,16 @@ namespace dfdyn::tools {
 ///
 /// Either of two conditions shows that a joint must have moved:
 /// - Speed: with an eighth of `acceleration` it could not stop within two quantization steps (the smallest
-///   step so far) plus four noise bounds of the velocity's filter. The speed is the smaller one of the
+///   step so far) plus four noise bounds of the feedback. The speed is the smaller one of the
 ///   present velocity and its mean over ten readings: a joint that vibrates or sticks has a velocity, too.
 ///   The repeated readings are then not used: see `repeated`.
-/// - Reference: it has since covered a sixteenth of the following error and eight quantization steps.
+/// - Reference: it has since covered eight quantization steps and `sticking`, so that friction cannot hold
+///   the joint against the feedback.
 ///
 /// O(joints) per tick; no heap after construction.
 class JointWatch {
   public:
-    JointWatch(SafeStopConfig config, double period_s, double noise_bound);
+    JointWatch(SafeStopConfig config, double period_s);
 
     /// Evaluates a new reading before the feedback uses it; `reference`: position at the same time.
     /// `missing`: joints without a reading, which are skipped.
@@ -52,10 +53,10 @@ class JointWatch {
     void found(StopCause cause, Eigen::Index joint) noexcept;
     void repeat(Eigen::Index joint, double reference, const PositionFeedback& feedback) noexcept;
     double steady_speed(Eigen::Index joint, double velocity) const noexcept;
-    bool must_have_moved(Eigen::Index joint, double count) const noexcept;
+    bool must_have_moved(Eigen::Index joint, double tolerance) const noexcept;
 
     SafeStopConfig config_;
-    double period_s_, noise_bound_;
+    double period_s_;
     JointVector reading_, speed_; ///< at the last change of the reading; NaN before the first
     JointVector mean_velocity_;
     JointVector lowest_, highest_;                    ///< range of the reference since then

@@ -24,14 +24,14 @@ PositionFeedback::PositionFeedback(FeedbackGains gains, const DerivativeModel& f
     newest_tick_.assign(count, std::numeric_limits<std::int32_t>::min());
     observed_tick_ = newest_tick_;
     regular_.resize(count);
+    restart_.resize(count);
     newest_ = velocity_ = reading_error_ = reading_rate_ = smallest_step_ = JointVector::Zero(joints);
 }
 
 double PositionFeedback::noise_bound(Eigen::Index joint) const noexcept {
     constexpr double largest_count = 4; // noise bounds; a larger step is motion
-    const double step = smallest_step_[joint];
-    return step <= largest_count * filter_.noise_bound ? std::max(filter_.noise_bound, step)
-                                                       : filter_.noise_bound;
+    const double step = smallest_step_[joint], given = filter_.noise_bound;
+    return given <= 0 || step <= largest_count * given ? std::max(given, step) : given;
 }
 
 void PositionFeedback::push(Eigen::Index joint, std::int64_t tick, double position, double reference) {
@@ -61,22 +61,55 @@ void PositionFeedback::push(Eigen::Index joint, std::int64_t tick, double positi
     if (count > 1) {
         const AdaptiveWindow<double> window(time_.data(), reading_.data() + first, 1, count,
                                             noise_bound(joint));
-        velocity_[joint] = window.velocity();
+        velocity_[joint] = reachable(joint, tick, window.velocity());
         reading_rate_[joint] = window.slope_of(reference_.data() + first) - velocity_[joint];
     }
+}
+
+void PositionFeedback::restart(Eigen::Index joint) {
+    const auto j = static_cast<std::size_t>(joint);
+    const bool returns = held_[j] < 3;
+    if (returns) { // to the motion before the jump
+        velocity_[joint] = restart_[j].velocity;
+        reading_rate_[joint] = restart_[j].rate;
+        restart_[j].jumped = false;
+    } else {
+        restart_[j] = {newest_tick_[j], velocity_[joint], reading_error_[joint], bounded_rate(joint), true};
+    }
+    held_[j] = 0;
+}
+
+double PositionFeedback::reachable(Eigen::Index joint, std::int64_t tick, double velocity) const noexcept {
+    const auto j = static_cast<std::size_t>(joint);
+    const Restart& last = restart_[j];
+    if (held_[j] >= window_ || last.tick < 0) {
+        return velocity;
+    }
+    const double time_s = period_s_ * static_cast<double>(tick - last.tick);
+    const double change = bounds_.acceleration[joint] * time_s;
+    const double limited = std::clamp(velocity, last.velocity - change, last.velocity + change);
+    return std::abs(velocity - limited) * time_s <= 2 * noise_bound(joint) ? limited : velocity;
 }
 
 bool PositionFeedback::plausible(Eigen::Index joint, std::int64_t tick, double position,
                                  const Reference& reference) const noexcept {
     const auto j = static_cast<std::size_t>(joint);
-    if (held_[j] < 3 || bounds_.acceleration.size() == 0) {
+    const double noise = noise_bound(joint);
+    if (bounds_.acceleration.size() == 0 || noise <= 0) { // without a bound the first step is the count
         return true;
     }
-    const double time_s = period_s_ * static_cast<double>(tick - newest_tick_[j]);
+    const auto follows = [&](std::int64_t since, double error, double rate) {
+        const double time_s = period_s_ * static_cast<double>(tick - since);
+        const double surprise = reference.position[joint] - position - error - rate * time_s;
+        return std::abs(surprise) <= bounds_.acceleration[joint] * time_s * time_s + 4 * noise;
+    };
+    if (held_[j] < 3) {
+        const Restart& last = restart_[j];
+        const bool returns = last.jumped && follows(last.tick, last.error, last.rate);
+        return !returns;
+    }
     // without the fading of error_at, which at a high rate would be an acceleration
-    const double expected = reading_error_[joint] + bounded_rate(joint) * time_s;
-    const double surprise = reference.position[joint] - position - expected;
-    return std::abs(surprise) <= bounds_.acceleration[joint] * time_s * time_s + 4 * filter_.noise_bound;
+    return follows(newest_tick_[j], reading_error_[joint], bounded_rate(joint));
 }
 
 void PositionFeedback::observe(int ticks_ago, const JointVector& position, const Reference& reference,
@@ -90,7 +123,9 @@ void PositionFeedback::observe(int ticks_ago, const JointVector& position, const
         const bool next = held_[j] == 0 || tick == newest_tick_[j] + 1;
         const bool believed = plausible(joint, tick, position[joint], reference);
         regular_[j] = next && believed;
-        held_[j] = believed ? held_[j] : 0; // the velocity is kept until there are two readings
+        if (!believed) {
+            restart(joint);
+        }
         push(joint, tick, position[joint], reference.position[joint]);
         observed_tick_[j] = tick_;
         reading_error_[joint] = reference.position[joint] - position[joint];

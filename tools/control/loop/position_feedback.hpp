@@ -23,17 +23,19 @@ struct MotionBounds {
 /// Proportional and derivative feedback of the joint positions, tick by tick. Every reading belongs to a
 /// tick. The velocity is estimated by the adaptive window (dfdyn::AdaptiveWindow: the longest line through at
 /// most `velocity_window` readings that deviates from none by more than `noise_bound`), with the readings'
-/// own times. A bound below the encoder's count (the smallest step so far, at most four bounds) is replaced
-/// by it: a line through a rounded reading deviates from another one by up to a count, and without this a
-/// window would sometimes have only two readings. The velocity across a gap is therefore the mean velocity
-/// over the gap. The reference's velocity is computed over the same window; with the present reference
-/// velocity, the readings' delay would act as an inertia.
+/// own times. A bound below the encoder's count (the smallest step so far, at most four bounds unless the
+/// bound is 0) is replaced by it: a line through a rounded reading deviates from another one by up to a
+/// count, and without this a window would sometimes have only two readings. The velocity across a gap is
+/// therefore the mean velocity over the gap. The reference's velocity is computed over the same window; with
+/// the present reference velocity, the readings' delay would act as an inertia.
 ///
 /// A joint without a reading in this tick is extrapolated by its tracking error: it follows the reference
 /// with its last error. The error's rate, limited to the joint's speed, decreases linearly to 0 within
 /// `fade_ticks`. A reading of an earlier tick is extrapolated in the same way. The feedback's torque
 /// therefore stays continuous and does not depend on a reading's age. A reading that requires an acceleration
-/// beyond the bounds restarts the joint's window; the velocity is kept until the next reading.
+/// beyond the bounds restarts the joint's window, as does one that returns to the motion before it. The
+/// velocity is kept until the next reading. Until the window is full, its change is limited by the
+/// acceleration's bound, as far as the noise of the readings explains the rest.
 ///
 /// No heap after construction; at most O(velocity_window²) per joint and reading.
 class PositionFeedback {
@@ -70,6 +72,8 @@ class PositionFeedback {
     const JointVector& velocity() const noexcept { return velocity_; }
     /// Smallest step between two successive readings of `joint` so far, rad: its encoder's count. 0: none.
     double smallest_step(Eigen::Index joint) const noexcept { return smallest_step_[joint]; }
+    /// Noise bound of the window of `joint`, rad.
+    double noise_bound(Eigen::Index joint) const noexcept;
     /// Ticks since the last reading of `joint`.
     std::int64_t age(Eigen::Index joint) const noexcept {
         return tick_ - newest_tick_[static_cast<std::size_t>(joint)];
@@ -85,8 +89,20 @@ class PositionFeedback {
     const FeedbackGains& gains() const noexcept { return gains_; }
 
   private:
-    double noise_bound(Eigen::Index joint) const noexcept;
+    /// Last reading before the restart of a joint's window, and the motion at its time.
+    struct Restart {
+        std::int64_t tick = -1; ///< -1: none
+        double velocity = 0;    ///< rad/s
+        double error = 0;       ///< reference minus reading, rad
+        double rate = 0;        ///< of the error, rad/s
+        bool jumped = false;    ///< the readings have not returned to that motion
+    };
+
+    /// Restarts the window of `joint`. Its velocity is kept until there are two readings.
+    void restart(Eigen::Index joint);
     void push(Eigen::Index joint, std::int64_t tick, double position, double reference);
+    /// Limits a noisy velocity by the last one before the restart of a window that is not full yet.
+    double reachable(Eigen::Index joint, std::int64_t tick, double velocity) const noexcept;
     bool plausible(Eigen::Index joint, std::int64_t tick, double position,
                    const Reference& reference) const noexcept;
     /// Error and its rate at `tick`, extrapolated from a joint's last reading.
@@ -109,6 +125,7 @@ class PositionFeedback {
     std::vector<std::int64_t> newest_tick_;   ///< of the last reading, per joint
     std::vector<std::int64_t> observed_tick_; ///< tick in which it was added
     std::vector<bool> regular_;               ///< whether the last reading directly followed the previous one
+    std::vector<Restart> restart_;            ///< last one of each joint's window
     JointVector newest_, position_, velocity_; ///< at the last readings
     JointVector smallest_step_;
     /// reference minus reading and its rate, at the last readings

@@ -2,6 +2,7 @@
 #include "tools/control/loop/safe_stop.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -59,7 +60,7 @@ void SafeStop::count(const TickHealth& health) {
     missed_ = health.deadline_missed ? missed_ + 1 : 0;
 }
 
-StopCause SafeStop::judge(const TickHealth& health, const JointVector& error) const {
+StopCause SafeStop::judge(const TickHealth& health, const JointVector& error) {
     if (health.stop_requested) {
         return StopCause::requested;
     }
@@ -73,10 +74,16 @@ StopCause SafeStop::judge(const TickHealth& health, const JointVector& error) co
         return StopCause::missed_deadlines;
     }
     if (health.joint != StopCause::none) {
+        joint_ = health.joint == StopCause::finding ? std::nullopt : std::optional(health.joint_number);
         return health.joint;
     }
-    const bool follows = (error.array().abs() <= config_.following_error.array()).all();
-    return follows ? StopCause::none : StopCause::following_error;
+    for (Eigen::Index joint = 0; joint < error.size(); ++joint) {
+        if (!(std::abs(error[joint]) <= config_.following_error[joint])) { // NaN does not follow
+            joint_ = joint;
+            return StopCause::following_error;
+        }
+    }
+    return StopCause::none;
 }
 
 LoopState SafeStop::tick(const TickHealth& health, const JointVector& error) {

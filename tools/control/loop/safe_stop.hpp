@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 namespace dfdyn::tools {
 
@@ -48,11 +49,13 @@ struct SafeStopConfig {
     int frozen_patience = 4;     ///< most successive identical readings of a joint that must have moved
     int pressing_ticks = 250;    ///< most ticks at the torque limit without motion
     JointVector following_error; ///< rad (prismatic: m); largest value while running and at the start
-    JointVector speed_limit;     ///< rad/s, m/s
-    JointVector torque_limit;    ///< N·m, N
-    JointVector acceleration;    ///< rad/s², m/s²: acceleration at twice the torque limit
-    int ramp_ticks = 200;        ///< duration of `stopping`
-    int brake_ticks = 200;       ///< from the request of the brakes until they have closed
+    /// rad (m): largest distance that the reference covers while friction may hold a joint
+    JointVector sticking;
+    JointVector speed_limit;  ///< rad/s, m/s
+    JointVector torque_limit; ///< N·m, N
+    JointVector acceleration; ///< rad/s², m/s²: acceleration at twice the torque limit
+    int ramp_ticks = 200;     ///< duration of `stopping`
+    int brake_ticks = 200;    ///< from the request of the brakes until they have closed
     StopMode mode = StopMode::hold;
 };
 
@@ -67,6 +70,7 @@ struct TickHealth {
     /// Ticks since the last reading of the joint that has waited longest. It bounds the count of successive
     /// ticks in which different joints lack a reading.
     int longest_silence = std::numeric_limits<int>::max();
+    Eigen::Index joint_number = 0; ///< from 0, of the joint with abnormal behaviour
 };
 
 /// State machine for a safe stop. The first cause is kept. A stopped loop cannot be restarted.
@@ -79,14 +83,17 @@ class SafeStop {
 
     LoopState state() const noexcept { return state_; }
     StopCause cause() const noexcept { return cause_; }
+    /// Joint (from 0) that caused following_error, overspeed, torque_limit or frozen_encoder.
+    std::optional<Eigen::Index> joint() const noexcept { return joint_; }
 
   private:
-    StopCause judge(const TickHealth& health, const JointVector& error) const;
+    StopCause judge(const TickHealth& health, const JointVector& error);
     void count(const TickHealth& health);
 
     SafeStopConfig config_;
     LoopState state_ = LoopState::waiting;
     StopCause cause_ = StopCause::none;
+    std::optional<Eigen::Index> joint_;
     int lost_ = 0, returning_ = 0, missed_ = 0; ///< successive ticks
     int ramped_ = 0;
 };

@@ -46,8 +46,8 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
         << name(loop.state()) << " (" << name(loop.cause());
     if (loop.cause() == StopCause::finding) {
         out << ": " << described(*loop.stopping_action());
-    } else if (loop.cause() >= StopCause::overspeed) {
-        out << " of joint " << loop.stopped_by() + 1;
+    } else if (const auto joint = loop.stopped_by()) {
+        out << " of joint " << *joint + 1;
     }
     out << ')' << (loop.brake_requested() ? ", brakes requested" : "") << (loop.limp() ? ", limp" : "")
         << '\n';
@@ -116,8 +116,8 @@ nlohmann::ordered_json loop_json(const std::string& name, const ControlLoop& loo
                                 {"largest_speed_rad_s", values_of(peaks.speed())},
                                 {"learning", nullptr},
                                 {"actions", nlohmann::ordered_json::array()}};
-    if (loop.cause() >= StopCause::overspeed) {
-        json["stopped_by_joint"] = loop.stopped_by() + 1;
+    if (const auto joint = loop.stopped_by()) {
+        json["stopped_by_joint"] = *joint + 1;
     }
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
         json["learning"] = {{"samples", learned->counters().samples},

@@ -24,29 +24,34 @@ namespace dfdyn {
 /// memory: it estimates a disturbance that repeats with every motion, such as friction, each time with a lag
 /// of 1/b. `FeedForward` learns such disturbances from the commands; the estimate then returns to zero.
 ///
-/// `LoopMargin` computes the bandwidth that a loop tolerates. If the joint is blocked, the estimate rises to
-/// its limit. Cost: 8 multiply-adds per joint and tick, 4 n + 1 scalars. Never allocates.
+/// `LoopMargin` computes the bandwidth that a loop tolerates. Rounded positions make de/dt noisy, and b J
+/// de/dt more so than the damping of the feedback. The bandwidth is therefore at most `step` over the largest
+/// change of J de/dt in a tick, which is remembered for about `memory_s`. If the joint is blocked, the
+/// estimate rises to its limit. Cost: 12 multiply-adds per joint and tick, 7 n + 1 scalars. Never allocates.
 template <class Scalar, int n>
 class DisturbanceObserver {
   public:
     using Torques = Storage<Scalar, n>; ///< n values, N·m (N for prismatic joints)
+
+    static constexpr Scalar memory_s = 5; ///< time constant
 
     /// Period, bandwidths and limits. A value outside its range is not detected.
     struct Settings {
         Scalar period_s;   ///< of a control tick; > 0
         Torques bandwidth; ///< per joint, rad/s; ≥ 0 and below 1 / period
         Torques limit;     ///< of |estimate|, per joint, N·m; ≥ 0
+        Torques step;      ///< usual limit of the change of b J de/dt in a tick, per joint, N·m; > 0
     };
 
     /// Starts without an estimate. `joint_count`: n.
     DisturbanceObserver(Extent<n> joint_count, Settings settings) noexcept
         : joints_(joint_count), settings_(std::move(settings)), integral_(Torques::zeros(joint_count)),
-          estimate_(integral_) {}
+          estimate_(integral_), momentum_(integral_), change_(integral_) {}
 
     /// Returns to the initial state: no estimate, no past.
     void restart() noexcept {
         for (int k = 0; k < joints_; ++k) {
-            integral_[k] = estimate_[k] = 0;
+            integral_[k] = estimate_[k] = momentum_[k] = change_[k] = 0;
         }
     }
 
@@ -61,11 +66,13 @@ class DisturbanceObserver {
     const Torques& update(const Scalar* feedback, const Scalar* inertia, const Scalar* error_rate,
                           const Scalar* excess) noexcept {
         for (int k = 0; k < joints_; ++k) {
-            const Scalar rise = settings_.bandwidth[k] * settings_.period_s * feedback[k];
-            const Scalar fast = settings_.bandwidth[k] * inertia[k] * error_rate[k];
-            if (!std::isfinite(rise) || !std::isfinite(fast)) {
+            const Scalar momentum = inertia[k] * error_rate[k];
+            if (!std::isfinite(momentum) || !std::isfinite(feedback[k])) {
                 continue;
             }
+            const Scalar bandwidth = bandwidth_for(momentum, k);
+            const Scalar rise = bandwidth * settings_.period_s * feedback[k];
+            const Scalar fast = bandwidth * momentum;
             const Scalar most = settings_.limit[k];
             integral_[k] = std::clamp(integral_[k] + (rise * excess[k] > 0 ? 0 : rise), -most, most);
             estimate_[k] = std::clamp(integral_[k] + fast, -most, most);
@@ -82,13 +89,24 @@ class DisturbanceObserver {
 
     /// Returns the multiply-adds of `update`.
     [[nodiscard]] static constexpr std::int64_t cost(Extent<n> joint_count) noexcept {
-        return std::int64_t{8} * joint_count;
+        return std::int64_t{12} * joint_count;
     }
 
   private:
+    /// Returns the bandwidth at which J de/dt changes the estimate by at most the joint's step.
+    Scalar bandwidth_for(Scalar momentum, int k) noexcept {
+        const Scalar kept = change_[k] * (1 - settings_.period_s / memory_s);
+        change_[k] = std::max(std::abs(momentum - momentum_[k]), kept);
+        momentum_[k] = momentum;
+        const Scalar most = settings_.bandwidth[k], step = settings_.step[k];
+        return most * change_[k] > step ? step / change_[k] : most;
+    }
+
     [[no_unique_address]] Extent<n> joints_;
     Settings settings_;
     Torques integral_, estimate_;
+    Torques momentum_; ///< J de/dt at the last tick, N·m·s
+    Torques change_;   ///< its largest change in a tick, N·m·s
 };
 
 } // namespace dfdyn

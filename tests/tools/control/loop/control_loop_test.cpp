@@ -192,6 +192,8 @@ TEST_CASE("default limits follow from gains and torque limits and robot unless l
     CHECK(limits(100).following_error[0] == Approx(0.8 * 20 / 100));
     CHECK(limits(10).following_error[0] == 0.5);
     CHECK(limits(0).following_error[0] == 0.5);
+    CHECK(limits(100).sticking[0] == Approx(0.25 * 20 / 100));
+    CHECK(std::isinf(limits(0).sticking[0]));
     CHECK(limits(100).speed_limit[0] == 2.5);
     CHECK(limits(100).acceleration[0] ==
           Approx(2 * 20 / (pendulum_mass * pendulum_length * pendulum_length)));

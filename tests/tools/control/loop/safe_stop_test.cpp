@@ -81,6 +81,24 @@ TEST_CASE("a following error beyond the limit in either direction or NaN stops t
         errors[1] = error;
         CHECK(stop.tick(healthy, errors) == LoopState::stopping);
         CHECK(stop.cause() == StopCause::following_error);
+        CHECK(stop.joint() == 1);
+    }
+}
+
+TEST_CASE("the joint of a stop is known if a joint caused it") {
+    for (const auto& [cause, known] : {std::pair(StopCause::overspeed, true),
+                                       {StopCause::frozen_encoder, true},
+                                       {StopCause::torque_limit, true},
+                                       {StopCause::finding, false}}) {
+        SafeStop stop = running();
+        CHECK_FALSE(stop.joint().has_value());
+        stop.tick(health([&, &found = cause](TickHealth& h) {
+                      h.joint = found;
+                      h.joint_number = 1;
+                  }),
+                  no_error);
+        CHECK(stop.cause() == cause);
+        CHECK(stop.joint().value_or(-1) == (known ? 1 : -1));
     }
 }
 
