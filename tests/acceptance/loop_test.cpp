@@ -2,16 +2,12 @@
 // Tracking of a loop that learns its arm over the frames of the arm's devices, compared with the nominal
 // rigid body.
 #include "tests/support/catch.hpp"
+#include "tests/tools/control/commissioned_model.hpp"
 #include "tests/tools/control/faulty_loop.hpp"
 #include "tools/commands/options/robot_options.hpp"
-#include "tools/control/closed_loop.hpp"
 #include "tools/control/report/tracking.hpp"
 #include "tools/control/report/tracking_report.hpp"
-#include "tools/model/structure.hpp"
-#include "tools/replay/contradiction.hpp"
-#include "tools/training/model_training.hpp"
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -45,53 +41,8 @@ Setting seven_joint_loop(const std::string& bus) {
     return setting("seven_joint_arm/seven_joint_arm.urdf", "seven_joint_loop.json", bus);
 }
 
-/// Records half a minute of the arm without payload on another motion with the nominal rigid body, at one row
-/// per 8 ms. The hyperparameters are trained on it.
-Recording commissioning(const Setting& setting) {
-    Scenario scenario = setting.scenario;
-    scenario.payloads.clear();
-    scenario.seed += 100;
-    const auto row_ticks = static_cast<int>(std::lround(0.008 * scenario.controller.rate_hz));
-    const std::size_t joints = setting.robot.joints.size();
-    Recording recording;
-    recording.source = "commissioning";
-    recording.position.names = joint_names("q", joints);
-    recording.output.names = output_names(OutputKind::joint_torque, joints);
-    ClosedLoop loop(setting.robot, scenario, "scenario", nullptr);
-    int tick = 0;
-    loop.run_to(30, [&](const ClosedLoopInstant& instant) {
-        if (tick++ % row_ticks != 0) {
-            return;
-        }
-        recording.gap_before.push_back(recording.time_s.empty());
-        recording.time_s.push_back(instant.time_s);
-        recording.time_ns.push_back(std::llround(instant.time_s * 1e9));
-        const JointVector& position = *instant.measured.position;
-        const JointVector& torque = *instant.measured.torque;
-        recording.position.values.insert(recording.position.values.end(), position.begin(), position.end());
-        recording.output.values.insert(recording.output.values.end(), torque.begin(), torque.end());
-    });
-    return recording;
-}
-
 LoopModel trained(const Setting& setting, const Structure& structure = structures::SPK, int features = 30) {
-    ModelTraining training;
-    TrainingOptions& options = training.options;
-    options.model = &structure;
-    options.feature_count = features;
-    options.likelihood_rows = 200;
-    options.starts = 2;
-    options.refinement_evaluations = 0;
-    options.forgetting_factor = 0.999;
-    options.physics.own_motion = true;
-    training.physics = RobotPhysics{
-        setting.robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"}, 0.05, {}};
-    const std::vector<Recording> recordings{commissioning(setting)};
-    LoopModel model{
-        train_model(prepare_training(recordings, training), OutputKind::joint_torque, training, {}).model,
-        "model", true};
-    calibrate_innovation_limit(model.model, recordings);
-    return model;
+    return dfdyn::tests::commissioned_model(setting.robot, setting.scenario, structure, features);
 }
 
 TrackingRun tracked(const Setting& setting, const std::string& name, const LoopModel* model,

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/loop_panel/loop_trial.hpp"
+
+#include "tools/control/closed_loop.hpp"
+#include "tools/control/report/loop_peaks.hpp"
+#include "tools/control/report/tracking.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn::tests {
+
+using namespace tools;
+
+LoopTrial run_loop(const StrangersLoop& stranger, bool observer, const LoopModel* model, double duration_s) {
+    LoopLimits limits;
+    if (!observer) {
+        limits.observer_bandwidth = {0};
+    }
+    ClosedLoop loop(stranger.robot, stranger.scenario, "scenario", model,
+                    stranger.bus ? &*stranger.bus : nullptr, limits);
+    Tracking tracking(1);
+    LoopPeaks peaks;
+    loop.run_to(duration_s, [&](const ClosedLoopInstant& instant) {
+        tracking.add(instant.time_s, instant.error, loop.loop().feed_forward().learned_share());
+        peaks.add(instant.command, loop.plant().truth().velocity);
+    });
+    LoopTrial trial;
+    trial.stop = loop.loop().state() == LoopState::running ? "" : name(loop.loop().cause());
+    trial.step = peaks.torque_step().cwiseQuotient(*stranger.scenario.actuators.torque_limit).maxCoeff();
+    trial.speed = peaks.speed().maxCoeff();
+    for (const TrackingWindow& window : tracking.windows()) {
+        trial.second = std::max(trial.second, window.all);
+        trial.error += window.all * window.all / static_cast<double>(tracking.windows().size());
+    }
+    trial.error = std::sqrt(trial.error);
+    return trial;
+}
+
+} // namespace dfdyn::tests
