@@ -62,14 +62,14 @@ void print_case(std::uint64_t seed, const StrangersLoop& loop, const std::vector
     std::fflush(stdout);
 }
 
-int run(std::uint64_t first, int cases, double duration_s, bool learned) {
+int run(std::uint64_t first, int cases, double duration_s, double gear_hz, bool learned) {
     std::vector<Variant> variants{Variant("nominal"), Variant("observer")};
     if (learned) {
         variants.emplace_back("learned");
     }
     int untuned = 0;
     for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(cases); ++seed) {
-        const std::optional<StrangersLoop> loop = draw_strangers_loop(seed);
+        const std::optional<StrangersLoop> loop = draw_strangers_loop(seed, gear_hz);
         if (!loop) {
             ++untuned;
             continue;
@@ -99,14 +99,17 @@ int main(int argc, char** argv) try {
     std::uint64_t seed = 1;
     int cases = 20;
     double duration_s = 20;
+    double gear_hz = 0;
     bool learned = false;
     CLI::App app("Runs the loops of random arms: docs/results/loop.md");
     app.add_option("--seed", seed, "Of the first arm; the others follow")->capture_default_str();
     app.add_option("--cases", cases, "Arms")->capture_default_str();
     app.add_option("--duration", duration_s, "Of each run, seconds")->capture_default_str();
+    app.add_option("--gear", gear_hz, "Frequency of the links on elastic gears, Hz; 0: rigid")
+        ->capture_default_str();
     app.add_flag("--learned", learned, "Also with an SPK model, trained on half a minute of each arm");
     CLI11_PARSE(app, argc, argv);
-    return run(seed, cases, duration_s, learned);
+    return run(seed, cases, duration_s, gear_hz, learned);
 } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
     return 1;

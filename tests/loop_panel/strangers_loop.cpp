@@ -182,6 +182,22 @@ Robot loaded(const StrangersLoop& loop) {
     return robot;
 }
 
+/// Elastic gears on which the links vibrate at `hz` while the motors are held.
+GearModel elastic_gears(const Robot& robot, const Scenario& scenario, double hz) {
+    constexpr int most_coordinates = 12;
+    constexpr double damping_ratio = 0.03;
+    const auto joints = static_cast<Eigen::Index>(robot.joints.size());
+    const JointVector links = demand_of(robot, scenario).usual - scenario.actuators.rotor_inertia;
+    const JointVector rigid = JointVector::Zero(joints);
+    GearModel gear{rigid, rigid, rigid};
+    const double rate = whole_turn * hz;
+    for (Eigen::Index joint = 0; joint < std::min(joints, most_coordinates - joints); ++joint) {
+        gear.stiffness[joint] = links[joint] * rate * rate;
+        gear.damping[joint] = 2 * damping_ratio * links[joint] * rate;
+    }
+    return gear;
+}
+
 /// What an engineer wants of the feedback.
 struct Wish {
     double margin;    ///< phase margin, rad
@@ -247,7 +263,7 @@ std::string StrangersLoop::summary() const {
     return text;
 }
 
-std::optional<StrangersLoop> draw_strangers_loop(std::uint64_t seed) {
+std::optional<StrangersLoop> draw_strangers_loop(std::uint64_t seed, double gear_hz) {
     const UnknownArm arm = draw_unknown_arm(seed);
     Draw draw(seed, 5);
     StrangersLoop loop;
@@ -264,6 +280,9 @@ std::optional<StrangersLoop> draw_strangers_loop(std::uint64_t seed) {
     const JointVector torque = demand_of(loaded(loop), scenario).torque * draw.uniform(2, 5);
     // a joint that carries nothing has a motor for its own inertia
     scenario.actuators.torque_limit = torque.cwiseMax(demand.usual * draw.log_uniform(15, 60));
+    if (gear_hz > 0) {
+        scenario.actuators.gear = elastic_gears(loop.robot, scenario, gear_hz);
+    }
     add_friction(scenario.actuators, demand, scenario.integration_rate_hz, draw);
     add_sensors(scenario, draw);
     add_bus(loop, draw);

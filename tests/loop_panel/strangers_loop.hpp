@@ -22,6 +22,9 @@ struct StrangersLoop {
 /// Draws a loop that is different for every seed. The engineer is content with feedback and rigid body alone:
 /// in the first 12 s they do not stop, and no command changes by more than 5 % of its limit in a tick.
 /// Returns nothing if twelve attempts at gains and velocity filter are not enough.
-std::optional<StrangersLoop> draw_strangers_loop(std::uint64_t seed);
+///
+/// `gear_hz`: frequency of each link on its gear while the motor is held, of the first joints as far as the
+/// simulation has coordinates for them; 0: rigid gears.
+std::optional<StrangersLoop> draw_strangers_loop(std::uint64_t seed, double gear_hz = 0);
 
 } // namespace dfdyn::tests
