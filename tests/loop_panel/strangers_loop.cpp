@@ -2,6 +2,7 @@
 #include "tests/loop_panel/strangers_loop.hpp"
 
 #include "dfdyn/control/loop_margin.hpp"
+#include "tests/diagnosis/panel/effects/panel_effect.hpp"
 #include "tests/diagnosis/panel/recording/panel_setup.hpp"
 #include "tests/loop_panel/loop_trial.hpp"
 #include "tools/base/text/error.hpp"
@@ -72,7 +73,6 @@ JointVector random_rotors(const Robot& robot, const Scenario& scenario, Draw& dr
 void add_friction(ActuatorModel& actuators, const Demand& demand, double integration_rate_hz, Draw& draw) {
     const double share = draw.log_uniform(0.02, 0.1);
     const double bend = draw.log_uniform(3e-4, 3e-3); // rad of the bristles at the level of friction
-    const double largest = std::pow(0.7 * integration_rate_hz, 2);
     for (Eigen::Index joint = 0; joint < demand.torque.size(); ++joint) {
         const double inertia = demand.least[joint];
         LuGreParameters friction;
@@ -80,11 +80,17 @@ void add_friction(ActuatorModel& actuators, const Demand& demand, double integra
         friction.breakaway = friction.coulomb * draw.uniform(1, 1.5);
         friction.stribeck_velocity = draw.log_uniform(0.02, 0.15);
         friction.viscous = friction.coulomb * draw.log_uniform(0.1, 1);
-        friction.stiffness = std::min(friction.coulomb / bend, largest * inertia);
+        add_bristles(friction, friction.coulomb, bend, inertia, 0.7 * integration_rate_hz);
         friction.damping = std::min(draw.uniform(0.2, 0.8) * std::sqrt(friction.stiffness * inertia),
                                     0.5 * integration_rate_hz * inertia);
         actuators.friction.push_back(friction);
     }
+}
+
+nlohmann::json bus_with(const nlohmann::json& joints, const std::string& trigger, double rate_hz) {
+    return {{"schema", "dfdyn.bus/1"},   {"bit_rate", 1000000},
+            {"sample_rate_hz", rate_hz}, {"trigger", {{"on", trigger}}},
+            {"joints", joints},          {"output", {{"family", "efforts"}, {"quantity", "tau"}}}};
 }
 
 nlohmann::json moteus_bus(int joints, double rate_hz) {
@@ -92,13 +98,9 @@ nlohmann::json moteus_bus(int joints, double rate_hz) {
     for (int joint = 1; joint <= joints; ++joint) {
         boards.push_back({{"id", joint}, {"joint", joint}});
     }
-    return {{"schema", "dfdyn.bus/1"},
-            {"bit_rate", 1000000},
-            {"data_bit_rate", 5000000},
-            {"sample_rate_hz", rate_hz},
-            {"trigger", {{"on", "timer"}}},
-            {"joints", {{"family", "moteus"}, {"boards", boards}}},
-            {"output", {{"family", "efforts"}, {"quantity", "tau"}}}};
+    nlohmann::json bus = bus_with({{"family", "moteus"}, {"boards", boards}}, "timer", rate_hz);
+    bus["data_bit_rate"] = 5000000;
+    return bus;
 }
 
 nlohmann::json drives_bus(const JointVector& torque_limit, double rate_hz, int bits) {
@@ -109,31 +111,30 @@ nlohmann::json drives_bus(const JointVector& torque_limit, double rate_hz, int b
                           {"counts_per_turn", 1 << bits},
                           {"effort_per_count", torque_limit[joint] / 3000}});
     }
-    return {{"schema", "dfdyn.bus/1"},
-            {"bit_rate", 1000000},
-            {"sample_rate_hz", rate_hz},
-            {"trigger", {{"on", "sync"}}},
-            {"joints",
-             {{"family", "cia402"},
-              {"position", {{"pdo", "0x280"}, {"length", 6}, {"start_bit", 0}, {"bits", 32}}},
-              {"effort", {{"pdo", "0x280"}, {"length", 6}, {"start_bit", 32}, {"bits", 16}}},
-              {"boards", boards}}},
-            {"output", {{"family", "efforts"}, {"quantity", "tau"}}}};
+    return bus_with({{"family", "cia402"},
+                     {"position", {{"pdo", "0x280"}, {"length", 6}, {"start_bit", 0}, {"bits", 32}}},
+                     {"effort", {{"pdo", "0x280"}, {"length", 6}, {"start_bit", 32}, {"bits", 16}}},
+                     {"boards", boards}},
+                    "sync", rate_hz);
 }
 
+/// Connects the loop by moteus controllers, by CiA 402 drives, or directly. A bus that is too slow is left
+/// out.
 void add_bus(StrangersLoop& loop, Draw& draw) {
     const double kind = draw.uniform(0, 1);
     const double rate_hz = loop.scenario.controller.rate_hz;
     if (kind < 0.3) {
         return;
     }
-    const nlohmann::json json = kind < 0.65 ? moteus_bus(static_cast<int>(loop.robot.joints.size()), rate_hz)
-                                            : drives_bus(*loop.scenario.actuators.torque_limit, rate_hz,
-                                                         std::max(12, loop.scenario.encoders.bits_per_turn));
-    loop.bus = parse_bus_description(json, kind < 0.65 ? "moteus" : "cia402");
+    loop.bus =
+        kind < 0.65
+            ? parse_bus_description(moteus_bus(static_cast<int>(loop.robot.joints.size()), rate_hz), "moteus")
+            : parse_bus_description(drives_bus(*loop.scenario.actuators.torque_limit, rate_hz,
+                                               loop.scenario.encoders.bits_per_turn),
+                                    "cia402");
     try {
         check_bus(*loop.bus, loop.robot, loop.scenario);
-    } catch (const InputError&) { // too slow
+    } catch (const InputError&) {
         loop.bus.reset();
     }
 }
@@ -158,15 +159,12 @@ void add_sensors(Scenario& scenario, Draw& draw) {
 /// What the description of the arm does not say.
 void add_errors(StrangersLoop& loop, double torque, Draw& draw) {
     Scenario& scenario = loop.scenario;
-    double reach = loop.robot.tip_placement.translation().norm();
     for (std::size_t joint = 0; joint < loop.robot.joints.size(); ++joint) {
-        const RobotJoint& described = loop.robot.joints[joint];
-        scenario.robot_errors.links.push_back(
-            {joint, described.inertia[0] * draw.uniform(-largest_error, largest_error)});
-        reach += described.placement.translation().norm();
+        const double mass = loop.robot.joints[joint].inertia[0];
+        scenario.robot_errors.links.push_back({joint, mass * draw.uniform(-largest_error, largest_error)});
     }
     if (draw.chance(0.6)) {
-        const double mass = draw.uniform(0.02, 0.15) * torque / (gravity * reach);
+        const double mass = draw.uniform(0.02, 0.15) * torque / (gravity * reach_of(loop.robot));
         scenario.payloads = {{0, mass, Eigen::Vector3d::Zero()}};
     }
     scenario.actuators.bandwidth_hz = draw.chance(0.5) ? 0 : draw.log_uniform(150, 1000);
@@ -182,12 +180,11 @@ Robot loaded(const StrangersLoop& loop) {
     return robot;
 }
 
-/// Elastic gears on which the links vibrate at `hz` while the motors are held.
-GearModel elastic_gears(const Robot& robot, const Scenario& scenario, double hz) {
+/// Elastic gears on which links with these inertias (kg·m²) vibrate at `hz` while the motors are held.
+GearModel elastic_gears(const JointVector& links, double hz) {
     constexpr int most_coordinates = 12;
     constexpr double damping_ratio = 0.03;
-    const auto joints = static_cast<Eigen::Index>(robot.joints.size());
-    const JointVector links = demand_of(robot, scenario).usual - scenario.actuators.rotor_inertia;
+    const Eigen::Index joints = links.size();
     const JointVector rigid = JointVector::Zero(joints);
     GearModel gear{rigid, rigid, rigid};
     const double rate = whole_turn * hz;
@@ -281,7 +278,7 @@ std::optional<StrangersLoop> draw_strangers_loop(std::uint64_t seed, double gear
     // a joint that carries nothing has a motor for its own inertia
     scenario.actuators.torque_limit = torque.cwiseMax(demand.usual * draw.log_uniform(15, 60));
     if (gear_hz > 0) {
-        scenario.actuators.gear = elastic_gears(loop.robot, scenario, gear_hz);
+        scenario.actuators.gear = elastic_gears(demand.usual - scenario.actuators.rotor_inertia, gear_hz);
     }
     add_friction(scenario.actuators, demand, scenario.integration_rate_hz, draw);
     add_sensors(scenario, draw);

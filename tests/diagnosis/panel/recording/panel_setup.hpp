@@ -44,6 +44,9 @@ struct UnknownArm {
 };
 UnknownArm draw_unknown_arm(std::uint64_t seed);
 
+/// Length of the stretched arm from its base to its tip, m.
+double reach_of(const tools::Robot& robot);
+
 /// Joint motion or outputs with one row per sample.
 struct MotionRows {
     Eigen::MatrixXd position, velocity, acceleration;

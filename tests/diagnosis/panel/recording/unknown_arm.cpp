@@ -182,15 +182,21 @@ PanelConditions unknown_conditions(Draw& draw) {
 /// Torque of gravity on the stretched arm at half of its reach, N·m.
 double weight_torque(const Robot& robot) {
     double mass = 0;
-    double reach = robot.tip_placement.translation().norm();
     for (const RobotJoint& joint : robot.joints) {
         mass += joint.inertia[0];
-        reach += joint.placement.translation().norm();
     }
-    return gravity * mass * reach / 2;
+    return gravity * mass * reach_of(robot) / 2;
 }
 
 } // namespace
+
+double reach_of(const Robot& robot) {
+    double reach = robot.tip_placement.translation().norm();
+    for (const RobotJoint& joint : robot.joints) {
+        reach += joint.placement.translation().norm();
+    }
+    return reach;
+}
 
 UnknownArm draw_unknown_arm(std::uint64_t seed) {
     Draw draw(seed, 4);
