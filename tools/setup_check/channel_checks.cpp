@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/checks.hpp"
 
+#include "tools/base/numerics/quantum.hpp"
+#include "tools/base/recording/columns_matrix.hpp"
 #include "tools/base/recording/stretches.hpp"
 #include "tools/base/text/instant.hpp"
 #include "tools/base/text/number.hpp"
@@ -130,29 +132,6 @@ Limit limit_of(const Recording& recording, std::size_t output, double end, doubl
     return limit;
 }
 
-/// Returns the quantization step of a column; empty if there is none, or for too few values.
-std::optional<double> quantum_of(const Columns& columns, std::size_t index) {
-    constexpr std::size_t fewest_values = 5;
-    std::vector<double> values;
-    for (std::size_t i = index; i < columns.values.size(); i += columns.names.size()) {
-        values.push_back(columns.values[i]);
-    }
-    std::ranges::sort(values);
-    double quantum = values.empty() ? 0 : values.back() - values.front();
-    const double rounding = 1e-6 * quantum;
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < values.size(); ++i) {
-        if (const double step = values[i] - values[i - 1]; step > rounding) {
-            steps.push_back(step);
-            quantum = std::min(quantum, step);
-        }
-    }
-    const bool multiples = std::ranges::all_of(steps, [&](double step) {
-        return std::abs(step - quantum * std::round(step / quantum)) < 0.02 * quantum;
-    });
-    return multiples && steps.size() >= fewest_values ? std::optional(quantum) : std::nullopt;
-}
-
 } // namespace
 
 SetupFindings check_dead_outputs(const Recording& recording, OutputKind outputs, const Robot* robot) {
@@ -219,7 +198,8 @@ SetupFindings check_quantised_positions(const Recording& recording) {
     SetupFindings findings;
     for (std::size_t joint = 0; joint < recording.joint_count() && recording.row_count() >= fewest_samples;
          ++joint) {
-        const std::optional<double> quantum = quantum_of(recording.position, joint);
+        const auto column = columns_matrix(recording.position).col(static_cast<Eigen::Index>(joint));
+        const std::optional<double> quantum = quantum_of({column.begin(), column.end()});
         if (quantum && *quantum > coarsest) {
             const std::string& name = recording.position.names[joint];
             findings.push_back({SetupFault::quantised_position, Severity::mistake, name,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/signals/measured_motion.hpp"
 
-#include "tools/base/numerics/quantile.hpp"
+#include "tools/base/numerics/quantum.hpp"
 #include "tools/base/recording/columns_matrix.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
-#include "tools/diagnosis/signals/lapped_transform.hpp"
 #include "tools/diagnosis/signals/low_pass_kernel.hpp"
+#include "tools/diagnosis/signals/position_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -66,55 +66,19 @@ Resampled resampled(const Recording& recording, const Stretch& stretch, double s
     return result;
 }
 
-/// Power of the positions per bin (one column per joint), averaged over the frames of all segments. It is
-/// computed from second differences, because the motion itself would leak into all bins, and divided by the
-/// frequency response of the differences.
-Eigen::MatrixXd position_power(const std::vector<Resampled>& stretches, const LappedTransform& transform) {
-    Eigen::MatrixXd power = Eigen::MatrixXd::Zero(transform.bins(), stretches.front().position.cols());
-    Eigen::Index frames = 0;
+/// Returns the noise of the recording's positions; its segments are `stretches`.
+PositionNoise noise_of(const Recording& recording, const std::vector<Resampled>& stretches, double rate_hz) {
+    const auto positions = columns_matrix(recording.position);
+    Eigen::VectorXd quantum(positions.cols());
+    for (Eigen::Index joint = 0; joint < quantum.size(); ++joint) {
+        const auto column = positions.col(joint);
+        quantum[joint] = quantum_of({column.begin(), column.end()}).value_or(0);
+    }
+    std::vector<Eigen::MatrixXd> segments;
     for (const Resampled& stretch : stretches) {
-        const Eigen::Index rows = stretch.position.rows() - 2;
-        for (Eigen::Index joint = 0; joint < power.cols(); ++joint) {
-            const Eigen::VectorXd position = stretch.position.col(joint);
-            const Eigen::VectorXd second =
-                position.tail(rows) - 2 * position.segment(1, rows) + position.head(rows);
-            power.col(joint) += transform.analyse(second).rowwise().squaredNorm();
-        }
-        frames += transform.frames(rows);
+        segments.push_back(stretch.position);
     }
-    for (Eigen::Index bin = 0; bin < power.rows(); ++bin) {
-        const double phase =
-            std::numbers::pi * (static_cast<double>(bin) + 0.5) / static_cast<double>(transform.hop());
-        power.row(bin) /= std::pow(2 * std::sin(phase / 2), 4);
-    }
-    return power / static_cast<double>(std::max<Eigen::Index>(frames, 1));
-}
-
-struct PositionNoise {
-    Eigen::VectorXd power;      ///< per joint and bin: the variance of white noise
-    Eigen::VectorXd trusted_hz; ///< per joint
-};
-
-/// The noise is assumed white, with the level of the top of the spectrum. A position is trusted up to the
-/// frequency where it is well above this level. Accelerations at higher frequencies would be noise and would
-/// resemble an additional inertia.
-PositionNoise position_noise(const std::vector<Resampled>& stretches, double rate_hz) {
-    const auto hop = std::max<Eigen::Index>(16, std::llround(rate_hz));
-    const LappedTransform transform(hop, hop);
-    const Eigen::MatrixXd power = position_power(stretches, transform);
-    const double bin_hz = rate_hz / (2 * static_cast<double>(hop));
-    PositionNoise noise{Eigen::VectorXd(power.cols()), Eigen::VectorXd(power.cols())};
-    for (Eigen::Index joint = 0; joint < power.cols(); ++joint) {
-        const Eigen::VectorXd top = power.col(joint).tail(hop / 3);
-        noise.power[joint] = median(std::vector<double>(top.begin(), top.end()));
-        const auto window = std::min<Eigen::Index>(hop / 4, std::llround(1.5 / bin_hz));
-        Eigen::Index bin = 0;
-        while (bin + window < hop && power.col(joint).segment(bin, window).mean() > 8 * noise.power[joint]) {
-            ++bin;
-        }
-        noise.trusted_hz[joint] = static_cast<double>(bin) * bin_hz;
-    }
-    return noise;
+    return position_noise(segments, quantum, rate_hz);
 }
 
 void append(MeasuredMotion& result, const Resampled& stretch, double rate_hz, Eigen::Index step) {
@@ -166,7 +130,7 @@ MeasuredMotion measured_motion(const Recording& recording) {
                          " s without a gap, found less");
     }
     const double rate_hz = 1 / step;
-    const PositionNoise noise = position_noise(stretches, rate_hz);
+    const PositionNoise noise = noise_of(recording, stretches, rate_hz);
     const auto decimation = std::max<Eigen::Index>(1, std::llround(std::ceil(rate_hz / highest_rate_hz)));
     MeasuredMotion result;
     result.rate_hz = rate_hz / static_cast<double>(decimation);

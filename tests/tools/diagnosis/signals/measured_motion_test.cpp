@@ -19,9 +19,10 @@ using Eigen::VectorXd;
 
 constexpr double swing_hz = 0.7;
 
-/// A swinging joint, measured by an encoder of 2^16 counts per turn with a jittering clock.
-Recording swinging(double rate_hz, double duration_s, std::mt19937_64& engine, double jitter_s) {
-    constexpr double count = 2 * std::numbers::pi / 65536;
+/// A swinging joint, measured by an encoder with a jittering clock.
+Recording swinging(double rate_hz, double duration_s, std::mt19937_64& engine, double jitter_s,
+                   int counts_per_turn = 65536) {
+    const double count = 2 * std::numbers::pi / counts_per_turn;
     std::normal_distribution<double> normal;
     Recording recording;
     recording.source = "swing.csv";
@@ -61,6 +62,35 @@ TEST_CASE("velocity and acceleration of a quantised swing with jitter are close 
               1e-2 * omega * omega);
         CHECK(middle_rms(measured.outputs.col(0).array() - angle.cos()) < 2e-3);
     }
+}
+
+TEST_CASE("the rounding of a slow joint by a coarse encoder does not become an acceleration") {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr double count = 2 * std::numbers::pi / 4096;
+    for (const double swing_rad : {0.01, 0.03, 0.1}) { // 6 to 60 counts
+        CAPTURE(swing_rad);
+        Recording recording = swinging(125, 90, engine, 0);
+        const auto slow = [&](double time_s) { // 0.05 and 0.13 Hz
+            return swing_rad * (std::sin(0.314 * time_s) + 0.3 * std::sin(0.817 * time_s + 1));
+        };
+        for (std::size_t row = 0; row < recording.row_count(); ++row) {
+            recording.position.values[row] = count * std::round(slow(recording.time_s[row]) / count);
+        }
+        // the largest true acceleration is 0.3 swing_rad, at most 0.03 rad/s²
+        CHECK(middle_rms(measured_motion(recording).motion.acceleration.col(0)) < 0.1);
+    }
+}
+
+TEST_CASE("a fine encoder keeps the fast motion of a joint that also moves slowly") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Recording recording = swinging(500, 40, engine, 0, 1 << 19);
+    for (std::size_t row = 0; row < recording.row_count(); ++row) {
+        constexpr double fast_hz = 8;
+        const double count = 2 * std::numbers::pi / (1 << 19);
+        const double shake = 0.01 * std::sin(2 * std::numbers::pi * fast_hz * recording.time_s[row]);
+        recording.position.values[row] = count * std::floor((recording.position.values[row] + shake) / count);
+    }
+    CHECK(measured_motion(recording).smoothing_hz[0] > 10);
 }
 
 TEST_CASE("a gap splits a recording and parts that are too short are dropped or an error if none is left") {
