@@ -130,6 +130,25 @@ MatrixXd rest_of(const DiagnosisWork& work, const std::vector<MovingFit>& fits) 
     return rest;
 }
 
+/// Returns plain least squares of all joints. Where they are named, links may differ from the robot's file:
+/// at a single joint, friction and offset would absorb such errors. `everywhere`: all joints are named.
+/// Otherwise a joint's noise is also that of its own fit, which sees a longer correlation.
+ArmFit fit_joints(DiagnosisWork& work, bool everywhere) {
+    const DiagnosisSignals& signals = *work.signals;
+    std::vector<MovingFit> single = fit_outputs(work);
+    const bool any = std::ranges::count(work.diagnosis.by_least_squares, true) > 0;
+    if (signals.wrench() || (!everywhere && !any)) {
+        MatrixXd rest = rest_of(work, single);
+        return {std::move(single), std::move(rest)};
+    }
+    ArmFit fit = fit_arm(signals, work.measured, single, work.gains_known);
+    for (std::size_t joint = 0; !everywhere && joint < single.size(); ++joint) {
+        auto variances = fit.joints[joint].covariance.diagonal();
+        variances = variances.cwiseMax(single[joint].covariance.diagonal()).eval();
+    }
+    return fit;
+}
+
 } // namespace
 
 bool friction_everywhere(const DiagnosisWork& work) {
@@ -156,14 +175,8 @@ double probability_of_size(double value, double deviation) {
 void name_by_least_squares(DiagnosisWork& work) {
     constexpr Index fewest_blocks = 10; // twice the coefficients
     const DiagnosisSignals& signals = *work.signals;
-    ArmFit fit;
-    fit.joints = fit_outputs(work);
     const bool everywhere = friction_everywhere(work);
-    if (everywhere) {
-        fit = fit_arm(signals, work.measured, std::move(fit.joints), work.gains_known);
-    } else {
-        fit.rest = rest_of(work, fit.joints);
-    }
+    ArmFit fit = fit_joints(work, everywhere);
     for (const StationaryContact& push : work.pushes) {
         fit.rest.col(static_cast<Index>(push.joint)) -= push.share;
     }
