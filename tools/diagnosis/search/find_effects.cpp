@@ -7,9 +7,9 @@
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/search/candidate_choice.hpp"
 #include "tools/diagnosis/search/candidate_entry.hpp"
+#include "tools/diagnosis/search/nuisance_parameters.hpp"
 #include "tools/diagnosis/search/prune_effects.hpp"
 #include "tools/diagnosis/search/robust_values.hpp"
-#include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
 #include <map>
@@ -22,16 +22,14 @@ namespace {
 
 constexpr int most_rounds = 10;
 constexpr int white_rounds = 3;
-/// standard deviation of a link's relative mass error, uniform within ±10 %
-constexpr double mass_deviation = 0.058;
 
 class Search {
   public:
     Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, const FitOptions& options,
            bool with_yielding)
         : signals_(signals), options_(options), rows_(signals.measured),
-          regression_(rows_, measured - signals.nominal, rows_.frames_within(options.fitted_share)) {
-        add_nuisance();
+          regression_(rows_, measured - signals.nominal, rows_.frames_within(options.fitted_share)),
+          nuisance_(signals, rows_, options.gains_known, result_) {
         for (Candidate& candidate : lasting_candidates(signals_, options_.effects)) {
             if (visible(signals_, candidate) && (with_yielding || !yields(candidate))) {
                 static_.emplace_back(rows_, std::move(candidate));
@@ -53,6 +51,7 @@ class Search {
     FittedEffects run() {
         settle();
         prune(result_, regression_);
+        result_.nuisance_with_lags = nuisance_.priors_with_lags(signals_, result_);
         make_robust(result_, regression_);
         return std::move(result_);
     }
@@ -63,7 +62,6 @@ class Search {
 
   private:
     void settle();
-    void add_nuisance();
     FittedModel fitted_model() const;
     FittedResidual fitted_residual() const;
     void add(std::vector<Candidate>& found, std::vector<Candidate> more) const;
@@ -71,7 +69,6 @@ class Search {
                      const FittedResidual& residual) const;
     std::vector<CandidateEntry> model_dependent() const;
     void refine();
-    void place_nuisance();
     void set_candidates(const std::vector<CandidateEntry>& entries);
     void gather(const std::vector<CandidateEntry>& model_dependent);
     void estimate_noise(bool white);
@@ -89,9 +86,8 @@ class Search {
     EffectRegression regression_;
     std::vector<CandidateEntry> static_; ///< candidates that do not depend on the current model
     bool chose_yielding_ = false;
-    std::vector<SpectralColumnPointer> nuisance_;
-    std::vector<double> nuisance_deviation_;
     FittedEffects result_;
+    NuisanceParameters nuisance_;
 };
 
 /// Searches in rounds until nothing changes.
@@ -118,23 +114,6 @@ void Search::settle() {
         }
         last = std::move(keys);
     }
-}
-
-/// Adds the nuisance parameters: small errors of the links' masses, and unknown torque constants.
-void Search::add_nuisance() {
-    const auto add = [this](EffectColumn column, double deviation) {
-        nuisance_.push_back(std::make_shared<const SpectralColumn>(rows_, column));
-        nuisance_deviation_.push_back(deviation);
-        result_.nuisance.push_back(std::move(column));
-    };
-    const Eigen::VectorXd parameters = nominal_parameters(signals_.robot, signals_.kind);
-    for (Eigen::Index body = 0; body < parameters.size() / 10; ++body) {
-        add(on_outputs(signals_.of_body(body, parameters.segment<10>(10 * body))), mass_deviation);
-    }
-    for (Eigen::Index joint = 0; !options_.gains_known && joint < signals_.outputs(); ++joint) {
-        add(on_output(joint, signals_.nominal.col(joint)), 10);
-    }
-    result_.uncertain_masses = parameters.size() / 10;
 }
 
 FittedModel Search::fitted_model() const {
@@ -230,17 +209,9 @@ void Search::refine() {
     }
 }
 
-/// Uses the first columns for the nuisance parameters.
-void Search::place_nuisance() {
-    result_.problem.nuisance.clear();
-    for (std::size_t i = 0; i < nuisance_.size(); ++i) {
-        result_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
-    }
-}
-
 /// Replaces the candidates of the problem. Their columns follow the nuisance parameters'.
 void Search::set_candidates(const std::vector<CandidateEntry>& entries) {
-    std::vector<SpectralColumnPointer> columns = nuisance_;
+    std::vector<SpectralColumnPointer> columns = nuisance_.columns();
     std::map<std::string, std::size_t> families{{"", 0}};
     result_.candidates.clear();
     result_.problem.candidates.clear();
@@ -278,7 +249,7 @@ void Search::gather(const std::vector<CandidateEntry>& model_dependent) {
     entries.insert(entries.end(), model_dependent.begin(), model_dependent.end());
     set_candidates(entries);
     set_classes(result_);
-    place_nuisance();
+    result_.problem.nuisance = nuisance_.priors();
     result_.problem.sums = regression_.weighted_sums();
     choose_again(result_, chosen);
 }

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/search/nuisance_parameters.hpp"
+
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/sliding.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// standard deviation of a link's relative mass error, uniform within ±10 %
+constexpr double mass_error = 0.058;
+constexpr double any_gain = 10;      ///< of the relative error of an unknown torque constant
+constexpr double no_friction = 1e-9; ///< N·m
+/// Standard deviation of a lag relative to the friction: the weight of a way is between 0 and 1.
+constexpr double lag_share = 0.5;
+
+std::vector<EffectColumn> mass_columns(const DiagnosisSignals& signals) {
+    const Eigen::VectorXd parameters = nominal_parameters(signals.robot, signals.kind);
+    std::vector<EffectColumn> columns;
+    for (Eigen::Index body = 0; body < parameters.size() / 10; ++body) {
+        columns.push_back(on_outputs(signals.of_body(body, parameters.segment<10>(10 * body))));
+    }
+    return columns;
+}
+
+/// Returns the differences between friction that builds up over longer and over shorter ways.
+std::vector<EffectColumn> lag_columns(const JointSignals& joint) {
+    std::vector<Eigen::VectorXd> ways = sliding_directions(joint);
+    ways.push_back(dahl(joint, shortest_presliding));
+    std::vector<EffectColumn> columns;
+    for (std::size_t way = 1; way < ways.size(); ++way) {
+        columns.push_back(joint.column(ways[way] - ways[way - 1]));
+    }
+    return columns;
+}
+
+} // namespace
+
+NuisanceParameters::NuisanceParameters(const DiagnosisSignals& signals, const SpectralRows& rows,
+                                       bool gains_known, FittedEffects& fitted) {
+    const auto add = [&](EffectColumn column, double deviation) {
+        columns_.push_back(std::make_shared<const SpectralColumn>(rows, column));
+        deviations_.push_back(deviation);
+        fitted.nuisance.push_back(std::move(column));
+    };
+    for (EffectColumn& column : mass_columns(signals)) {
+        add(std::move(column), mass_error);
+        ++fitted.uncertain_masses;
+    }
+    for (Eigen::Index joint = 0; !gains_known && joint < signals.outputs(); ++joint) {
+        add(on_output(joint, signals.nominal.col(joint)), any_gain);
+        ++fitted.unknown_gains;
+    }
+    for (std::size_t number = 0; !signals.wrench() && number < signals.joints(); ++number) {
+        if (signals.hardly_moves(number)) {
+            continue;
+        }
+        const JointSignals joint(signals, number);
+        for (EffectColumn& column : lag_columns(joint)) {
+            lags_.push_back({columns_.size(), sliding_family(joint)});
+            add(std::move(column), no_friction);
+        }
+    }
+}
+
+std::vector<NuisanceColumn> NuisanceParameters::priors() const {
+    std::vector<NuisanceColumn> result;
+    for (std::size_t i = 0; i < deviations_.size(); ++i) {
+        result.push_back({static_cast<Eigen::Index>(i), deviations_[i]});
+    }
+    return result;
+}
+
+std::vector<NuisanceColumn> NuisanceParameters::priors_with_lags(const DiagnosisSignals& signals,
+                                                                 const FittedEffects& fitted) const {
+    std::vector<NuisanceColumn> result = fitted.problem.nuisance;
+    for (const Lag& lag : lags_) {
+        const Eigen::MatrixXd friction = fitted.effects(
+            signals, [&lag](const Candidate& candidate) { return candidate.family == lag.family; });
+        const double level = std::sqrt(friction.squaredNorm() / static_cast<double>(friction.rows()));
+        const auto at =
+            std::ranges::find(result, static_cast<Eigen::Index>(lag.number), &NuisanceColumn::column);
+        at->deviation = std::max(lag_share * level, no_friction);
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools
