@@ -6,6 +6,7 @@
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/search/fitted_effects.hpp"
 
+#include <limits>
 #include <random>
 #include <string>
 #include <utility>
@@ -27,7 +28,7 @@ inline tools::Candidate of_one_column(const std::string& effect, const std::stri
 }
 
 /// A fitted model of candidates on the first output. The first `chosen` candidates are in the model, each in
-/// its first shape; the noise has a variance of 1.
+/// its first shape; the noise has a variance of 1. There is no friction that could build up.
 inline tools::FittedEffects fitted_effects_of(const std::vector<tools::Candidate>& candidates,
                                               std::size_t chosen, const Eigen::VectorXd& unexplained) {
     Eigen::MatrixXd columns(unexplained.size(), 0);
@@ -54,6 +55,7 @@ inline tools::FittedEffects fitted_effects_of(const std::vector<tools::Candidate
     fitted_effects.fit = tools::fit_effects(fitted_effects.problem, fitted_effects.chosen);
     fitted_effects.named = tools::fit_effects(fitted_effects.problem, fitted_effects.named_effects());
     fitted_effects.values = fitted_effects.named;
+    fitted_effects.margin_with_lags.assign(chosen, std::numeric_limits<double>::infinity());
     return fitted_effects;
 }
 

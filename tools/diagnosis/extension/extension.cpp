@@ -20,7 +20,8 @@ namespace {
 void add_nuisance(ModelExtension& extension, const DiagnosisWork& work) {
     const FittedEffects& fitted_effects = work.fitted_effects;
     const Eigen::Index bodies = fitted_effects.uncertain_masses;
-    for (Eigen::Index i = 0; i < bodies + fitted_effects.unknown_gains; ++i) {
+    const auto count = static_cast<Eigen::Index>(fitted_effects.nuisance.size());
+    for (Eigen::Index i = 0; i < count; ++i) {
         const double factor = fitted_effects.nuisance_factor(i);
         if (i < bodies) {
             extension.bodies.segment<10>(10 * i) *= factor;

@@ -12,6 +12,7 @@
 #include "tools/diagnosis/search/robust_values.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <utility>
@@ -51,8 +52,8 @@ class Search {
     FittedEffects run() {
         settle();
         prune(result_, regression_);
-        result_.nuisance_with_lags = nuisance_.priors_with_lags(signals_, result_);
         make_robust(result_, regression_);
+        weigh_with_lags();
         return std::move(result_);
     }
 
@@ -73,6 +74,7 @@ class Search {
     void gather(const std::vector<CandidateEntry>& model_dependent);
     void estimate_noise(bool white);
     void reset_event_thresholds();
+    void weigh_with_lags();
     Eigen::VectorXd of_named(Eigen::VectorXd coefficients) const;
 
     const DiagnosisSignals& signals_;
@@ -288,6 +290,17 @@ void Search::reset_event_thresholds() {
     for (const ChosenShape& one : result_.chosen) {
         result_.candidates[one.candidate].evidence_offset = 0;
     }
+}
+
+/// Sets `margin_with_lags`.
+void Search::weigh_with_lags() {
+    const std::vector<NuisanceColumn> exact = result_.problem.nuisance;
+    std::ranges::copy(nuisance_.lags(signals_, result_), std::back_inserter(result_.problem.nuisance));
+    const Neighbours near(result_.problem, result_.chosen);
+    for (std::size_t i = 0; i < result_.chosen.size(); ++i) {
+        result_.margin_with_lags.push_back(near.score() - near.score_without(i));
+    }
+    result_.problem.nuisance = exact;
 }
 
 } // namespace

@@ -30,12 +30,11 @@ struct FittedEffects {
     EffectFit values; ///< of the named effects: the coefficients that are reported (`make_robust`)
     /// Number of links with uncertain mass, the first nuisance parameters: all or none.
     Eigen::Index uncertain_masses = 0;
-    Eigen::Index unknown_gains = 0; ///< number of joints' gains among the nuisance parameters: all or none
-    Eigen::MatrixXd noise;          ///< bins x m: spectra of the residual
-    std::vector<EffectColumn> nuisance; ///< masses, then gains, then the way in which friction builds up
-    /// The nuisance parameters, with priors that allow friction to build up over a short way after a reversal
-    /// (`NuisanceParameters`).
-    std::vector<NuisanceColumn> nuisance_with_lags;
+    Eigen::MatrixXd noise; ///< bins x m: spectra of the residual
+    std::vector<EffectColumn> nuisance;
+    /// Per chosen effect: log-odds against the model without it, if friction may build up over a short way
+    /// after each reversal (`NuisanceParameters`).
+    std::vector<double> margin_with_lags;
     /// Per output: no effect is exactly right, because the weights of the noise and equal weights give values
     /// that differ by more than noise (`make_robust`).
     std::vector<bool> inexact;

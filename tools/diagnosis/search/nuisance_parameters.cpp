@@ -3,10 +3,12 @@
 
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/candidates/sliding.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -30,6 +32,11 @@ std::vector<EffectColumn> mass_columns(const DiagnosisSignals& signals) {
     return columns;
 }
 
+bool is_dry_friction(const std::string& name) {
+    const Effect* const effect = find_effect(name);
+    return effect != nullptr && effect->friction && effect->textbook != TextbookTerm::viscous;
+}
+
 /// Returns the differences between friction that builds up over longer and over shorter ways.
 std::vector<EffectColumn> lag_columns(const JointSignals& joint) {
     std::vector<Eigen::VectorXd> ways = sliding_directions(joint);
@@ -45,8 +52,11 @@ std::vector<EffectColumn> lag_columns(const JointSignals& joint) {
 
 NuisanceParameters::NuisanceParameters(const DiagnosisSignals& signals, const SpectralRows& rows,
                                        bool gains_known, FittedEffects& fitted) {
-    const auto add = [&](EffectColumn column, double deviation) {
+    const auto add_column = [&](const EffectColumn& column) {
         columns_.push_back(std::make_shared<const SpectralColumn>(rows, column));
+    };
+    const auto add = [&](EffectColumn column, double deviation) {
+        add_column(column);
         deviations_.push_back(deviation);
         fitted.nuisance.push_back(std::move(column));
     };
@@ -56,38 +66,37 @@ NuisanceParameters::NuisanceParameters(const DiagnosisSignals& signals, const Sp
     }
     for (Eigen::Index joint = 0; !gains_known && joint < signals.outputs(); ++joint) {
         add(on_output(joint, signals.nominal.col(joint)), any_gain);
-        ++fitted.unknown_gains;
     }
     for (std::size_t number = 0; !signals.wrench() && number < signals.joints(); ++number) {
         if (signals.hardly_moves(number)) {
             continue;
         }
         const JointSignals joint(signals, number);
-        for (EffectColumn& column : lag_columns(joint)) {
-            lags_.push_back({columns_.size(), sliding_family(joint)});
-            add(std::move(column), no_friction);
+        for (const EffectColumn& column : lag_columns(joint)) {
+            add_column(column);
+            lag_joints_.push_back(joint.where);
         }
     }
 }
 
 std::vector<NuisanceColumn> NuisanceParameters::priors() const {
     std::vector<NuisanceColumn> result;
-    for (std::size_t i = 0; i < deviations_.size(); ++i) {
-        result.push_back({static_cast<Eigen::Index>(i), deviations_[i]});
+    for (const double deviation : deviations_) {
+        result.push_back({std::ssize(result), deviation});
     }
     return result;
 }
 
-std::vector<NuisanceColumn> NuisanceParameters::priors_with_lags(const DiagnosisSignals& signals,
-                                                                 const FittedEffects& fitted) const {
-    std::vector<NuisanceColumn> result = fitted.problem.nuisance;
-    for (const Lag& lag : lags_) {
-        const Eigen::MatrixXd friction = fitted.effects(
-            signals, [&lag](const Candidate& candidate) { return candidate.family == lag.family; });
+std::vector<NuisanceColumn> NuisanceParameters::lags(const DiagnosisSignals& signals,
+                                                     const FittedEffects& fitted) const {
+    Eigen::Index column = std::ssize(deviations_);
+    std::vector<NuisanceColumn> result;
+    for (const std::string& joint : lag_joints_) {
+        const Eigen::MatrixXd friction = fitted.effects(signals, [&joint](const Candidate& candidate) {
+            return candidate.where == joint && is_dry_friction(candidate.effect);
+        });
         const double level = std::sqrt(friction.squaredNorm() / static_cast<double>(friction.rows()));
-        const auto at =
-            std::ranges::find(result, static_cast<Eigen::Index>(lag.number), &NuisanceColumn::column);
-        at->deviation = std::max(lag_share * level, no_friction);
+        result.push_back({column++, std::max(lag_share * level, no_friction)});
     }
     return result;
 }

@@ -7,43 +7,33 @@
 #include "tools/diagnosis/signals/signals.hpp"
 #include "tools/diagnosis/signals/spectral_rows.hpp"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace dfdyn::tools {
 
-/// Parameters that every model has and that are no finding: errors of the links' masses, unknown torque
-/// constants, and the way in which friction builds up after a reversal. No simulation has the latter exactly.
-/// The search assumes that it has, because these columns would compete with its candidates. The evidence of
-/// what it found is then computed without this assumption: the error at each reversal resembles a delay, a
-/// dependence on load or an inertia.
+/// Parameters of a model that are no finding. All models have errors of the links' masses and unknown torque
+/// constants. The way in which friction builds up after a reversal, its lag, is in no simulation exactly. The
+/// search has no lags, because their columns would compete with its candidates. The evidence of what it found
+/// is then also computed with them: the error at each reversal resembles a delay, a dependence on load or an
+/// inertia.
 class NuisanceParameters {
   public:
-    /// Sets the members of `fitted` that describe the parameters.
+    /// Sets `fitted.nuisance` and `fitted.uncertain_masses`.
     NuisanceParameters(const DiagnosisSignals& signals, const SpectralRows& rows, bool gains_known,
                        FittedEffects& fitted);
 
+    /// Returns the first columns of the normal equations: masses, gains, lags.
     const std::vector<SpectralColumnPointer>& columns() const { return columns_; }
-
-    /// Returns the priors: friction has its full size after a short way. The parameters have the first
-    /// columns of the normal equations.
+    /// Returns the parameters of all models, with their priors: masses and gains.
     std::vector<NuisanceColumn> priors() const;
-    /// Returns the nuisance parameters of a model, with priors that allow the friction that it has at each
-    /// joint to build up over any short way.
-    std::vector<NuisanceColumn> priors_with_lags(const DiagnosisSignals& signals,
-                                                 const FittedEffects& fitted) const;
+    /// Returns the lags, with priors by the dry friction of a model.
+    std::vector<NuisanceColumn> lags(const DiagnosisSignals& signals, const FittedEffects& fitted) const;
 
   private:
-    /// A parameter of a joint's friction.
-    struct Lag {
-        std::size_t number; ///< of the parameter
-        std::string family; ///< of the joint's friction (Candidate::family)
-    };
-
     std::vector<SpectralColumnPointer> columns_;
-    std::vector<double> deviations_;
-    std::vector<Lag> lags_;
+    std::vector<double> deviations_;      ///< of the first columns: masses and gains
+    std::vector<std::string> lag_joints_; ///< of the other columns: where the friction acts
 };
 
 } // namespace dfdyn::tools

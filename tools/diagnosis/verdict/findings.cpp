@@ -67,14 +67,8 @@ void weigh_alternatives(Finding& finding, const FittedEffects& fitted_effects, c
     }
 }
 
-/// The model, and the model with priors that allow friction to build up over a short way after a reversal.
-struct NeighbourModels {
-    const Neighbours& exact;
-    const Neighbours& with_lags;
-};
-
 /// Returns a chosen named effect as a finding, without its gain.
-Finding of_cause(const FittedEffects& fitted_effects, const NeighbourModels& near, std::size_t index,
+Finding of_cause(const FittedEffects& fitted_effects, const Neighbours& near, std::size_t index,
                  double duration_s) {
     const Candidate& candidate = fitted_effects.candidates[fitted_effects.chosen[index].candidate];
     Finding finding;
@@ -82,12 +76,11 @@ Finding of_cause(const FittedEffects& fitted_effects, const NeighbourModels& nea
     finding.where = candidate.where;
     finding.detail = candidate.detail;
     finding.parameters = found_parameters(fitted_effects, index);
-    weigh_alternatives(finding, fitted_effects, near.exact, index);
-    // confidence is low if an effect is significant only together with an unnamed one that cancels most of it
-    // or if it is the way in which friction builds up
-    const double with_lags = near.with_lags.score() - near.with_lags.score_without(index);
-    finding.margin_to_nothing =
-        std::min({finding.margin_to_nothing, fitted_effects.evidence(index), with_lags});
+    weigh_alternatives(finding, fitted_effects, near, index);
+    // confidence is low if an effect is significant only together with an unnamed one that cancels most of
+    // it, or if the way in which friction builds up explains as much
+    finding.margin_to_nothing = std::min(
+        {finding.margin_to_nothing, fitted_effects.evidence(index), fitted_effects.margin_with_lags[index]});
     finding.confidence = calibrated_confidence(finding, duration_s);
     finding.confirm = confirmation(finding);
     return finding;
@@ -128,28 +121,17 @@ std::string held_words(const StationaryContact& push, bool prismatic) {
            " changes by " + interval(std::abs(push.change), push.change_deviation) + "; ";
 }
 
-/// Returns the model with priors that allow friction to build up over a short way after a reversal.
-SearchProblem problem_with_lags(const FittedEffects& fitted_effects) {
-    SearchProblem problem = fitted_effects.problem;
-    if (!fitted_effects.nuisance_with_lags.empty()) {
-        problem.nuisance = fitted_effects.nuisance_with_lags;
-    }
-    return problem;
-}
-
 /// Returns the chosen named effects that reduce the error.
 std::vector<Finding> of_causes(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
                                const Gains& gains) {
     const double duration_s = static_cast<double>(signals.rows()) / signals.measured.rate_hz;
     const Neighbours near(fitted_effects.problem, fitted_effects.chosen);
-    const SearchProblem lagging = problem_with_lags(fitted_effects);
-    const Neighbours near_with_lags(lagging, fitted_effects.chosen);
     // named effects are the first of those chosen
     const std::vector<ChosenShape> named = fitted_effects.named_effects();
     std::vector<Finding> findings;
     for (std::size_t i = 0; i < named.size(); ++i) {
         const std::string key = fitted_effects.candidates[named[i].candidate].key();
-        Finding finding = of_cause(fitted_effects, {near, near_with_lags}, i, duration_s);
+        Finding finding = of_cause(fitted_effects, near, i, duration_s);
         if (gains.tell(finding, fitted_effects.effects(
                                     signals, [&](const Candidate& one) { return one.key() == key; }))) {
             findings.push_back(std::move(finding));

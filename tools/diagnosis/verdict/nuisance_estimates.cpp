@@ -38,7 +38,7 @@ std::vector<NuisanceEstimate> estimate_nuisances(const DiagnosisSignals& signals
     const Eigen::VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
     const Eigen::Index bodies = fitted_effects.uncertain_masses;
     std::vector<NuisanceEstimate> result;
-    for (Eigen::Index i = 0; i < bodies + fitted_effects.unknown_gains; ++i) {
+    for (Eigen::Index i = 0; i < std::ssize(fitted_effects.nuisance); ++i) {
         const double factor = fitted_effects.nuisance_factor(i);
         const double reach = factor_reach(fitted_effects.fit, i);
         if (i < bodies) {

@@ -136,7 +136,8 @@ MatrixXd rest_of(const DiagnosisWork& work, const std::vector<MovingFit>& fits) 
 ArmFit fit_joints(DiagnosisWork& work, bool everywhere) {
     const DiagnosisSignals& signals = *work.signals;
     std::vector<MovingFit> single = fit_outputs(work);
-    const bool any = std::ranges::count(work.diagnosis.by_least_squares, true) > 0;
+    const bool any =
+        std::ranges::find(work.diagnosis.by_least_squares, true) != work.diagnosis.by_least_squares.end();
     if (signals.wrench() || (!everywhere && !any)) {
         MatrixXd rest = rest_of(work, single);
         return {std::move(single), std::move(rest)};

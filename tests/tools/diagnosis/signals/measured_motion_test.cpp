@@ -19,10 +19,9 @@ using Eigen::VectorXd;
 
 constexpr double swing_hz = 0.7;
 
-/// A swinging joint, measured by an encoder with a jittering clock.
-Recording swinging(double rate_hz, double duration_s, std::mt19937_64& engine, double jitter_s,
-                   int counts_per_turn = 65536) {
-    const double count = 2 * std::numbers::pi / counts_per_turn;
+/// A swinging joint, measured by an encoder of 2^16 counts per turn with a jittering clock.
+Recording swinging(double rate_hz, double duration_s, std::mt19937_64& engine, double jitter_s) {
+    constexpr double count = 2 * std::numbers::pi / 65536;
     std::normal_distribution<double> normal;
     Recording recording;
     recording.source = "swing.csv";
@@ -39,6 +38,15 @@ Recording swinging(double rate_hz, double duration_s, std::mt19937_64& engine, d
         recording.gap_before.push_back(row == 0 ? 1 : 0);
     }
     return recording;
+}
+
+/// Replaces the positions by those of another joint (`position`, rad, at a time in s) and encoder.
+template <class Position>
+void measure(Recording& recording, int counts_per_turn, Position position) {
+    const double count = 2 * std::numbers::pi / counts_per_turn;
+    for (std::size_t row = 0; row < recording.row_count(); ++row) {
+        recording.position.values[row] = count * std::round(position(recording.time_s[row]) / count);
+    }
 }
 
 double middle_rms(const VectorXd& series) {
@@ -66,16 +74,12 @@ TEST_CASE("velocity and acceleration of a quantised swing with jitter are close 
 
 TEST_CASE("the rounding of a slow joint by a coarse encoder does not become an acceleration") {
     DFDYN_SEEDED_ENGINE(engine);
-    constexpr double count = 2 * std::numbers::pi / 4096;
     for (const double swing_rad : {0.01, 0.03, 0.1}) { // 6 to 60 counts
         CAPTURE(swing_rad);
         Recording recording = swinging(125, 90, engine, 0);
-        const auto slow = [&](double time_s) { // 0.05 and 0.13 Hz
+        measure(recording, 4096, [swing_rad](double time_s) { // 0.05 and 0.13 Hz
             return swing_rad * (std::sin(0.314 * time_s) + 0.3 * std::sin(0.817 * time_s + 1));
-        };
-        for (std::size_t row = 0; row < recording.row_count(); ++row) {
-            recording.position.values[row] = count * std::round(slow(recording.time_s[row]) / count);
-        }
+        });
         // the largest true acceleration is 0.3 swing_rad, at most 0.03 rad/s²
         CHECK(middle_rms(measured_motion(recording).motion.acceleration.col(0)) < 0.1);
     }
@@ -83,13 +87,12 @@ TEST_CASE("the rounding of a slow joint by a coarse encoder does not become an a
 
 TEST_CASE("a fine encoder keeps the fast motion of a joint that also moves slowly") {
     DFDYN_SEEDED_ENGINE(engine);
-    Recording recording = swinging(500, 40, engine, 0, 1 << 19);
-    for (std::size_t row = 0; row < recording.row_count(); ++row) {
+    Recording recording = swinging(500, 40, engine, 0);
+    measure(recording, 1 << 19, [](double time_s) {
         constexpr double fast_hz = 8;
-        const double count = 2 * std::numbers::pi / (1 << 19);
-        const double shake = 0.01 * std::sin(2 * std::numbers::pi * fast_hz * recording.time_s[row]);
-        recording.position.values[row] = count * std::floor((recording.position.values[row] + shake) / count);
-    }
+        return std::sin(2 * std::numbers::pi * swing_hz * time_s) +
+               0.01 * std::sin(2 * std::numbers::pi * fast_hz * time_s);
+    });
     CHECK(measured_motion(recording).smoothing_hz[0] > 10);
 }
 

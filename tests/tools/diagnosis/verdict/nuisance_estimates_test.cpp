@@ -24,7 +24,6 @@ FittedEffects of_nuisance(const VectorXd& coefficients, Index masses) {
     fitted_effects.fit.covariance = 4e-4 * MatrixXd::Identity(coefficients.size(), coefficients.size());
     fitted_effects.nuisance.resize(static_cast<std::size_t>(coefficients.size()));
     fitted_effects.uncertain_masses = masses;
-    fitted_effects.unknown_gains = coefficients.size() - masses;
     return fitted_effects;
 }
 
