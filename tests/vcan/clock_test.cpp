@@ -51,6 +51,7 @@ TEST_CASE("setting the wall clock does not change the stamps") {
     // The two clocks are read one after the other, so a stamp is wrong by at most the time in between.
     constexpr std::int64_t between_ns = 1'000'000;
     for (std::size_t index = 0; index < 2; ++index) {
+        CAPTURE(index);
         CHECK(frames[index].stamp_source == StampSource::kernel);
         CHECK(frames[index].stamp_ns > sent_ns.at(2 * index) - between_ns);
         CHECK(frames[index].stamp_ns < sent_ns.at(2 * index + 1) + between_ns);

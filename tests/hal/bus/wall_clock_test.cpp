@@ -47,6 +47,27 @@ TEST_CASE("setting the wall clock moves no time stamp of frames that were waitin
             .stamp_ns == 6 * second_ns);
 }
 
+TEST_CASE("setting the wall clock moves no time stamp of a frame that the kernel was delivering") {
+    const std::int64_t step_ns = GENERATE(3600 * second_ns, -3600 * second_ns, second_ns, -second_ns);
+    const std::int64_t delay_ns = GENERATE(200'000, 20'000'000);
+    CAPTURE(step_ns, delay_ns);
+    WallClock clock;
+    clock.nothing_waiting(5 * second_ns, boot_ns + 5 * second_ns);
+    // Stamped at 6 s, just before the clock is set. The next reading finds nothing, the one after it the
+    // frame.
+    const std::int64_t taken_ns = 6 * second_ns;
+    const std::int64_t empty_ns = taken_ns + delay_ns;
+    clock.nothing_waiting(empty_ns, boot_ns + empty_ns + step_ns);
+    const std::int64_t read_ns = empty_ns + 1'000'000;
+    const auto [stamp_ns, plausible] =
+        clock.to_monotonic(boot_ns + taken_ns, read_ns, boot_ns + read_ns + step_ns);
+    CHECK(plausible);
+    CHECK(stamp_ns == taken_ns);
+    // A frame of the new time is not mistaken for one of the old time.
+    CHECK(clock.to_monotonic(boot_ns + read_ns + step_ns, read_ns + 10, boot_ns + read_ns + 10 + step_ns)
+              .stamp_ns == read_ns);
+}
+
 TEST_CASE("a time stamp that no difference of the clocks explains becomes the time of reading") {
     WallClock clock;
     clock.nothing_waiting(5 * second_ns, boot_ns + 5 * second_ns);

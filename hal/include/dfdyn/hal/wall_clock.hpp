@@ -7,13 +7,17 @@
 namespace dfdyn::hal {
 
 /// Converts wall-clock time stamps to the monotonic clock, even if the wall clock is set meanwhile. A time
-/// stamp is shifted by the difference of the two clocks when it is read. Stamps that were waiting while the
-/// wall clock was set need the difference before. They are recognised because only that difference places
-/// them between now and the last time at which no frame was waiting. Allocates nothing; O(1) per stamp.
+/// stamp is shifted by the difference of the two clocks when it is read. Frames that were waiting or being
+/// delivered while the wall clock was set need the difference before. They are recognised because only that
+/// difference places them between now and the last time at which no frame was waiting. Allocates nothing;
+/// O(1) per stamp.
 class WallClock {
   public:
     /// A larger change of the difference means that the clock was set; slewing changes it by far less.
     static constexpr std::int64_t step_ns = 1'000'000;
+    /// A stamped frame can be read after at most this time. Its software interrupt usually delivers it at
+    /// once, but waits for a thread if the kernel is busy.
+    static constexpr std::int64_t delivery_ns = 50'000'000;
 
     /// A converted time stamp.
     struct Converted {
@@ -23,39 +27,49 @@ class WallClock {
 
     /// Reports both clocks at a time when no frame is waiting to be read.
     constexpr void nothing_waiting(std::int64_t monotonic_ns, std::int64_t wall_ns) noexcept {
-        offset_ns_ = monotonic_ns - wall_ns;
+        note_difference(monotonic_ns, wall_ns);
         empty_ns_ = monotonic_ns;
-        was_set_ = false;
+        was_set_ = was_set_ && monotonic_ns - set_ns_ <= delivery_ns;
     }
 
     /// Converts the wall-clock time stamp `stamp_ns`, read when the clocks show `monotonic_ns` and `wall_ns`.
     constexpr Converted to_monotonic(std::int64_t stamp_ns, std::int64_t monotonic_ns,
                                      std::int64_t wall_ns) noexcept {
-        const std::int64_t offset_ns = monotonic_ns - wall_ns;
-        if (differ(offset_ns, offset_ns_)) {
-            previous_offset_ns_ = offset_ns_;
-            was_set_ = true;
-        }
-        offset_ns_ = offset_ns;
-        for (const std::int64_t candidate_ns :
-             {stamp_ns + offset_ns_, stamp_ns + (was_set_ ? previous_offset_ns_ : offset_ns_)}) {
-            const bool too_early = was_set_ && candidate_ns < empty_ns_ - step_ns;
-            if (!too_early && candidate_ns < monotonic_ns + step_ns) {
-                return {std::min(candidate_ns, monotonic_ns), true};
+        note_difference(monotonic_ns, wall_ns);
+        const std::int64_t after_ns = stamp_ns + offset_ns_;
+        const std::int64_t before_ns = stamp_ns + (was_set_ ? previous_offset_ns_ : offset_ns_);
+        // Most frames are delivered at once, so a time stamp after the last empty reading is the likelier
+        // one.
+        for (const std::int64_t delay_ns : {step_ns, delivery_ns}) {
+            for (const std::int64_t candidate_ns : {after_ns, before_ns}) {
+                const bool too_early = was_set_ && candidate_ns < empty_ns_ - delay_ns;
+                if (!too_early && candidate_ns < monotonic_ns + step_ns) {
+                    return {std::min(candidate_ns, monotonic_ns), true};
+                }
             }
         }
         return {monotonic_ns, false};
     }
 
   private:
-    static constexpr bool differ(std::int64_t one_ns, std::int64_t other_ns) noexcept {
-        return one_ns - other_ns > step_ns || other_ns - one_ns > step_ns;
+    constexpr void note_difference(std::int64_t monotonic_ns, std::int64_t wall_ns) noexcept {
+        const std::int64_t offset_ns = monotonic_ns - wall_ns;
+        const std::int64_t change_ns = offset_ns - offset_ns_;
+        if (started_ && (change_ns > step_ns || change_ns < -step_ns)) {
+            previous_offset_ns_ = offset_ns_;
+            set_ns_ = monotonic_ns;
+            was_set_ = true;
+        }
+        offset_ns_ = offset_ns;
+        started_ = true;
     }
 
     std::int64_t offset_ns_ = 0;
     std::int64_t previous_offset_ns_ = 0; ///< difference before the wall clock was last set
+    std::int64_t set_ns_ = 0;             ///< when this was noticed, on the monotonic clock
     std::int64_t empty_ns_ = 0;
-    bool was_set_ = false; ///< since the last time at which no frame was waiting
+    bool started_ = false;
+    bool was_set_ = false; ///< frames from before the wall clock was set may still come
 };
 
 /// Converts time stamps of a controller's own clock, with unknown origin and a slightly different rate, to
