@@ -63,10 +63,11 @@ class JointController {
     static constexpr int joints = 6;                     ///< of the arm and of the model
     static constexpr std::int64_t period_ns = 1'000'000; ///< of `update`
     static constexpr int ticks_per_sample = 8;           ///< the model was trained on samples 8 ms apart
-    static constexpr int hold_ticks = 5;          ///< ticks that a correction is held without measurement
-    static constexpr float observer_share = 0.3F; ///< of the limit: the observer's largest effort
-    static constexpr float observer_step = 0.04F; ///< of the limit: its change in a tick by noise
-    static constexpr float step_share = 0.02F;    ///< of the limit, per tick: 20 limits per second
+    static constexpr int hold_ticks = 5;            ///< ticks that a correction is held without measurement
+    static constexpr float observer_share = 0.3F;   ///< of the limit: the observer's largest effort
+    static constexpr float observer_step = 0.04F;   ///< of the limit: its change in a tick by noise
+    static constexpr float vibration_swing = 0.05F; ///< of the limit: halves the observer's bandwidth
+    static constexpr float step_share = 0.02F;      ///< of the limit, per tick: 20 limits per second
 
     using Learned = dfdyn::LearnedTorque<ur5_model::Model>;     ///< the model and its state
     using Forward = dfdyn::FeedForward<Learned>;                ///< nominal and learned effort
@@ -101,7 +102,7 @@ class JointController {
                               .bandwidth = all(gains.bandwidth),
                               .observer_limit = all(observer_share * gains.limit)}),
           observer_({}, {1e-9F * period_ns, all(gains.bandwidth), all(observer_share * gains.limit),
-                         all(observer_step * gains.limit)}) {}
+                         all(observer_step * gains.limit), all(vibration_swing * gains.limit)}) {}
 
     /// Starts the controller. The arm must be at rest at the beginning of the reference.
     void activate(const State& state) {

@@ -20,14 +20,21 @@ LoopTrial run_loop(const StrangersLoop& stranger, bool observer, const LoopModel
     ClosedLoop loop(stranger.robot, stranger.scenario, "scenario", model,
                     stranger.bus ? &*stranger.bus : nullptr, limits);
     Tracking tracking(1);
-    LoopPeaks peaks;
+    LoopPeaks peaks, late_peaks;
     loop.run_to(duration_s, [&](const ClosedLoopInstant& instant) {
         tracking.add(instant.time_s, instant.error, loop.loop().feed_forward().learned_share());
         peaks.add(instant.command, loop.plant().truth().velocity);
+        if (instant.time_s >= duration_s / 2) {
+            late_peaks.add(instant.command);
+        }
     });
     LoopTrial trial;
     trial.stop = loop.loop().state() == LoopState::running ? "" : name(loop.loop().cause());
-    trial.step = peaks.torque_step().cwiseQuotient(*stranger.scenario.actuators.torque_limit).maxCoeff();
+    const JointVector& limit = *stranger.scenario.actuators.torque_limit;
+    trial.step = peaks.torque_step().cwiseQuotient(limit).maxCoeff();
+    if (late_peaks.torque_step().size() > 0) {
+        trial.late_step = late_peaks.torque_step().cwiseQuotient(limit).maxCoeff();
+    }
     trial.speed = peaks.speed().maxCoeff();
     for (const TrackingWindow& window : tracking.windows()) {
         trial.second = std::max(trial.second, window.all);

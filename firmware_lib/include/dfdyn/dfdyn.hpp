@@ -11,6 +11,7 @@
 #include "dfdyn/control/learned_torque.hpp"
 #include "dfdyn/control/learner_pair.hpp"
 #include "dfdyn/control/loop_margin.hpp"
+#include "dfdyn/control/vibration_watch.hpp"
 #include "dfdyn/core/snapshot_writer.hpp"
 #include "dfdyn/estimator.hpp"
 #include "dfdyn/extrapolation.hpp"

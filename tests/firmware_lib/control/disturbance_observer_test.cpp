@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 
 namespace disturbance_observer_test {
@@ -38,7 +39,7 @@ double error_after_step(double t) {
 
 TEST_CASE("after a torque step the error has the feedback's poles and one at the bandwidth") {
     ServoJoint joint(joint_loop, step_s);
-    Observer observer({}, {step_s, {{bandwidth}}, {{100}}, {{unlimited}}});
+    Observer observer({}, {step_s, {{bandwidth}}, {{100}}, {{unlimited}}, {{unlimited}}});
     double largest = 0;
     double worst = 0;
     for (int i = 0; i < 100'000; ++i) {
@@ -58,7 +59,7 @@ TEST_CASE("after a torque step the error has the feedback's poles and one at the
 TEST_CASE("an estimate stays within its limit and does not wind up at the command's limit") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> size(0, 50);
-    Observer observer({}, {1e-3, {{bandwidth}}, {{3}}, {{unlimited}}});
+    Observer observer({}, {1e-3, {{bandwidth}}, {{3}}, {{unlimited}}, {{unlimited}}});
     for (int i = 0; i < 10'000; ++i) {
         const double feedback = size(engine);
         const double rate = size(engine);
@@ -84,7 +85,7 @@ struct Rounded {
 };
 Rounded after_rounding(double count, double step) {
     constexpr double period = 1e-3, feedback = 1, inertia = 1.5;
-    Observer observer({}, {period, {{bandwidth}}, {{1e6}}, {{step}}});
+    Observer observer({}, {period, {{bandwidth}}, {{1e6}}, {{step}}, {{unlimited}}});
     Rounded result{0, 0};
     double at_1_s = 0;
     for (int tick = 0; tick < 5000; ++tick) {
@@ -108,8 +109,50 @@ TEST_CASE("rounded rates change an estimate by hardly more than its step") {
     CHECK(after_rounding(0.001, 0.5).slope == Approx(bandwidth).epsilon(0.05));
 }
 
+/// Torques of feedback and observer on a motor whose link is held by an elastic gear.
+struct ElasticRun {
+    double share;  ///< left of the observer's bandwidth
+    double swings; ///< height of the torque in the last second of ten, N·m
+};
+ElasticRun run_on_elastic_gear(double observer_bandwidth, double swing) {
+    constexpr double motor = 0.6, link = 0.9, damping = 2, period = 1e-3;
+    constexpr double rate = 2 * 3.14159 * 25; // of the link while the motor is held, rad/s
+    constexpr double stiffness = link * rate * rate, inertia = motor + link;
+    constexpr int substeps = 20, delay = 4;
+    Observer observer({}, {period, {{observer_bandwidth}}, {{100}}, {{unlimited}}, {{swing}}});
+    double angle = 0, speed = 0, link_angle = 0, link_speed = 0, lowest = 0, highest = 0;
+    std::deque<double> torques(delay, 0.0);
+    for (int tick = 0; tick < 10'000; ++tick) {
+        const double feedback = -400 * angle - 60 * speed, error_rate = -speed;
+        const double estimate = observer.update(&feedback, &inertia, &error_rate, &none)[0];
+        torques.push_back(std::clamp(feedback + estimate, -100.0, 100.0));
+        for (int step = 0; step < substeps; ++step) {
+            const double spring =
+                stiffness * (link_angle - angle) + damping * (link_speed - speed); // on the motor
+            speed += period / substeps * (torques.front() + spring) / motor;
+            link_speed += period / substeps * (10 - spring) / link; // a load of 10 N·m
+            angle += period / substeps * speed;
+            link_angle += period / substeps * link_speed;
+        }
+        lowest = tick == 9000 ? torques.back() : std::min(lowest, torques.back());
+        highest = tick == 9000 ? torques.back() : std::max(highest, torques.back());
+        torques.pop_front();
+    }
+    return {observer.share()[0], highest - lowest};
+}
+
+TEST_CASE("an observer that makes an elastic gear vibrate lowers its bandwidth until the gear is calm") {
+    REQUIRE(run_on_elastic_gear(0, unlimited).swings < 0.1); // the feedback alone is stable
+    REQUIRE(run_on_elastic_gear(bandwidth, unlimited).swings > 20);
+    const ElasticRun watched = run_on_elastic_gear(bandwidth, 5);
+    CHECK(watched.swings < 5);
+    CHECK(watched.share < 1);
+    CHECK(watched.share >= 0.125);
+    CHECK(run_on_elastic_gear(bandwidth / 16, 5).share == 1); // nothing to lower
+}
+
 TEST_CASE("NaN inputs do not change the estimate") {
-    DisturbanceObserver<float, 2> observer({}, {0.001F, {{20, 20}}, {{5, 5}}, {{5, 5}}});
+    DisturbanceObserver<float, 2> observer({}, {0.001F, {{20, 20}}, {{5, 5}}, {{5, 5}}, {{5, 5}}});
     const float inertia[] = {1, 1};
     const float zero[] = {0, 0};
     const float push[] = {4, 4};

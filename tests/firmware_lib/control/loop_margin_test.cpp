@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace loop_margin_test {
@@ -33,8 +34,9 @@ JointLoop<double> random_loop(std::mt19937_64& engine) {
 /// Returns the largest position in the first and in the last tenth of the 10 s after a small impulse.
 std::pair<double, double> after_a_blow(const JointLoop<double>& loop, double observer_inertia,
                                        double bandwidth) {
+    constexpr double unlimited = std::numeric_limits<double>::infinity();
     ServoJoint joint(loop, step_s);
-    DisturbanceObserver<double, 1> observer({}, {step_s, {{bandwidth}}, {{1e9}}, {{1e9}}});
+    DisturbanceObserver<double, 1> observer({}, {step_s, {{bandwidth}}, {{1e9}}, {{1e9}}, {{unlimited}}});
     joint.advance(1e-3 * loop.inertia / step_s);
     std::pair<double, double> largest{0, 0};
     constexpr int steps = static_cast<int>(10 / step_s);

@@ -26,7 +26,8 @@ DisturbanceObserver<double, dynamic> make_observer(const LoopConfig& config) {
     const bool none = config.bandwidth.size() == 0;
     return {{static_cast<int>(limit.size())},
             {config.period_s, torques(none ? JointVector::Zero(limit.size()) : config.bandwidth),
-             torques(ControlLoop::observer_share * limit), torques(ControlLoop::observer_step * limit)}};
+             torques(ControlLoop::observer_share * limit), torques(ControlLoop::observer_step * limit),
+             torques(ControlLoop::vibration_swing * limit)}};
 }
 
 } // namespace
@@ -331,6 +332,10 @@ bool ControlLoop::done() const noexcept {
     const double silent_s = config_.period_s * static_cast<double>(counters_.ticks - position_tick_);
     const bool over = told_ || limp() || silent_s >= give_up_s;
     return state() == LoopState::stopped && (!moved() || (brake_requested() && over));
+}
+
+std::vector<double> ControlLoop::bandwidth_share() const {
+    return {observer_.share().begin(), observer_.share().end()};
 }
 
 void ControlLoop::limit() {

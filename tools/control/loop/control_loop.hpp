@@ -59,7 +59,8 @@ struct LoopCounters {
 /// feed-forward uses times on the loop's own grid and learns from the commands, so that a wrong torque sensor
 /// does not degrade the tracking. The disturbance observer compensates the error of the feed-forward, at most
 /// `observer_share` of the torque limit; noise of the readings changes it by about `observer_step` of the
-/// limit per tick at most. It holds its value while positions are missing.
+/// limit per tick at most. It holds its value while positions are missing. A joint that it makes vibrate, by
+/// `vibration_swing` of the limit from turn to turn, halves its bandwidth (dfdyn::VibrationWatch).
 ///
 /// The torque of feedback and observer changes by at most `feedback_step` of the torque limit per tick: a
 /// wrong reading that a joint could have reached makes no kick. After a tick that was not regular (see
@@ -97,6 +98,7 @@ class ControlLoop {
     static constexpr double feedback_step = 0.1, recovery_step = 0.05;
     static constexpr double observer_share = 0.3;
     static constexpr double observer_step = 0.04;
+    static constexpr double vibration_swing = 0.05;
     static constexpr int recovery_ticks = 10;
     static constexpr double stop_time_s = 0.1;
     static constexpr int damping_ticks = 5;
@@ -131,6 +133,8 @@ class ControlLoop {
     /// Reference minus position, measured at the last tick or extrapolated, rad, at the time of the
     /// measurement.
     const JointVector& error() const noexcept { return error_; }
+    /// Share of each joint's observer bandwidth that vibrations left, 0 … 1.
+    std::vector<double> bandwidth_share() const;
     const LoopCounters& counters() const noexcept { return counters_; }
     const FeedForward& feed_forward() const noexcept { return feed_forward_; }
 

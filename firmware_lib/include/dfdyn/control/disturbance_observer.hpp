@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/control/vibration_watch.hpp"
 #include "dfdyn/core/storage.hpp"
 
 #include <algorithm>
@@ -26,14 +27,21 @@ namespace dfdyn {
 ///
 /// `LoopMargin` computes the bandwidth that a loop tolerates. Rounded positions make de/dt noisy, and b J
 /// de/dt more so than the damping of the feedback. The bandwidth is therefore at most `step` over the largest
-/// change of J de/dt in a tick, which is remembered for about `memory_s`. If the joint is blocked, the
-/// estimate rises to its limit. Cost: 12 multiply-adds per joint and tick, 7 n + 1 scalars. Never allocates.
+/// change of J de/dt in a tick, which is remembered for about `memory_s`.
+///
+/// Elastic gears, of which the margin knows nothing, can make a joint vibrate. Each time `VibrationWatch`
+/// finds that the torque of feedback and observer does so, the joint's bandwidth is halved, for good, down to
+/// `least_share`.
+///
+/// If the joint is blocked, the estimate rises to its limit. Cost: 15 multiply-adds per joint and tick, 13 n
+/// + 2 scalars. Never allocates.
 template <class Scalar, int n>
 class DisturbanceObserver {
   public:
     using Torques = Storage<Scalar, n>; ///< n values, N·m (N for prismatic joints)
 
-    static constexpr Scalar memory_s = 5; ///< time constant
+    static constexpr Scalar memory_s = 5;                  ///< time constant
+    static constexpr Scalar least_share = Scalar(1) / 256; ///< that vibrations leave of a bandwidth
 
     /// Period, bandwidths and limits. A value outside its range is not detected.
     struct Settings {
@@ -41,14 +49,18 @@ class DisturbanceObserver {
         Torques bandwidth; ///< per joint, rad/s; ≥ 0 and below 1 / period
         Torques limit;     ///< of |estimate|, per joint, N·m; ≥ 0
         Torques step;      ///< usual limit of the change of b J de/dt in a tick, per joint, N·m; > 0
+        Torques swing;     ///< of feedback and estimate, from turn to turn of a vibration, N·m; > 0
     };
 
     /// Starts without an estimate. `joint_count`: n.
     DisturbanceObserver(Extent<n> joint_count, Settings settings) noexcept
         : joints_(joint_count), settings_(std::move(settings)), integral_(Torques::zeros(joint_count)),
-          estimate_(integral_), momentum_(integral_), change_(integral_) {}
+          estimate_(integral_), momentum_(integral_), change_(integral_), share_(integral_),
+          watch_(joint_count, settings_.period_s, settings_.swing) {
+        std::fill(share_.begin(), share_.end(), Scalar(1));
+    }
 
-    /// Returns to the initial state: no estimate, no past.
+    /// Returns to the initial state: no estimate, no past. Bandwidths that vibrations lowered stay.
     void restart() noexcept {
         for (int k = 0; k < joints_; ++k) {
             integral_[k] = estimate_[k] = momentum_[k] = change_[k] = 0;
@@ -76,6 +88,9 @@ class DisturbanceObserver {
             const Scalar most = settings_.limit[k];
             integral_[k] = std::clamp(integral_[k] + (rise * excess[k] > 0 ? 0 : rise), -most, most);
             estimate_[k] = std::clamp(integral_[k] + fast, -most, most);
+            if (watch_.vibrates(k, feedback[k] + estimate_[k])) {
+                share_[k] = std::max(share_[k] / 2, least_share);
+            }
         }
         return estimate_;
     }
@@ -87,9 +102,12 @@ class DisturbanceObserver {
     /// holds the arm when the loop ends.
     [[nodiscard]] const Torques& lasting() const noexcept { return integral_; }
 
+    /// Returns what vibrations left of each joint's bandwidth, `least_share` … 1; initially 1.
+    [[nodiscard]] const Torques& share() const noexcept { return share_; }
+
     /// Returns the multiply-adds of `update`.
     [[nodiscard]] static constexpr std::int64_t cost(Extent<n> joint_count) noexcept {
-        return std::int64_t{12} * joint_count;
+        return std::int64_t{15} * joint_count;
     }
 
   private:
@@ -98,7 +116,7 @@ class DisturbanceObserver {
         const Scalar kept = change_[k] * (1 - settings_.period_s / memory_s);
         change_[k] = std::max(std::abs(momentum - momentum_[k]), kept);
         momentum_[k] = momentum;
-        const Scalar most = settings_.bandwidth[k], step = settings_.step[k];
+        const Scalar most = share_[k] * settings_.bandwidth[k], step = settings_.step[k];
         return most * change_[k] > step ? step / change_[k] : most;
     }
 
@@ -107,6 +125,8 @@ class DisturbanceObserver {
     Torques integral_, estimate_;
     Torques momentum_; ///< J de/dt at the last tick, N·m·s
     Torques change_;   ///< its largest change in a tick, N·m·s
+    Torques share_;
+    VibrationWatch<Scalar, n> watch_;
 };
 
 } // namespace dfdyn

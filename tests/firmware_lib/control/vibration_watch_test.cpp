@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/control/vibration_watch.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace vibration_watch_test {
+
+using namespace dfdyn;
+
+using Watch = VibrationWatch<double, 1>;
+constexpr double swing = 2;
+
+/// Sine of this amplitude on a slow motion.
+struct Sine {
+    double hz, amplitude, rate_hz;
+
+    [[nodiscard]] double at(int tick) const {
+        const double phase = 2 * std::numbers::pi * tick / rate_hz;
+        return 10 * std::sin(0.5 * phase) + amplitude * std::sin(hz * phase);
+    }
+};
+
+/// Number of times that the watch finds a vibration in 10 s.
+int found(const Sine& sine) {
+    Watch watch({}, 1 / sine.rate_hz, {{swing}});
+    int times = 0;
+    for (int tick = 0; tick < 10 * sine.rate_hz; ++tick) {
+        times += watch.vibrates(0, sine.at(tick)) ? 1 : 0;
+    }
+    return times;
+}
+
+TEST_CASE("a vibration is found every four periods at each frequency and rate of the loop") {
+    const double hz = GENERATE(8.0, 12.0, 25.0, 50.0, 80.0);
+    const double rate_hz = GENERATE(250.0, 1000.0, 4000.0);
+    const double amplitude = rate_hz > 8 * hz ? 1.5 * swing : 4 * swing; // half a period of four ticks
+    CAPTURE(hz, rate_hz);
+    const int times = found({hz, amplitude, rate_hz});
+    CHECK(times <= 10 * hz / 4);
+    CHECK(times >= 10 * hz / 4 - 3);
+}
+
+TEST_CASE("motions, single steps and vibrations smaller than the swing are no vibration") {
+    CHECK(found({25, 0.4 * swing, 1000}) == 0);
+    CHECK(found({2, 20 * swing, 1000}) == 0);
+    CHECK(found({4, 20 * swing, 1000}) == 0);
+    Watch watch({}, 1e-3, {{swing}});
+    for (int tick = 0; tick < 20'000; ++tick) { // friction at a reversal, each quarter of a second
+        REQUIRE_FALSE(watch.vibrates(0, tick / 250 % 2 == 0 ? 10 : -10));
+    }
+}
+
+TEST_CASE("noise and an encoder's counts are no vibration") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const double height = GENERATE(0.2, 0.4, 0.6); // standard deviation, by the swing
+    CAPTURE(height);
+    std::normal_distribution<double> noise(0, height * swing);
+    std::uniform_int_distribution<int> pause(4, 60);
+    Watch noisy({}, 1e-3, {{swing}}), counted({}, 1e-3, {{swing}});
+    int next = 0;
+    int found = 0;
+    for (int tick = 0; tick < 1'000'000; ++tick) {
+        found += noisy.vibrates(0, noise(engine)) ? 1 : 0;
+        next = tick > next + 2 ? tick + pause(engine)
+                               : next; // the rate's window contains a count for three ticks
+        found += counted.vibrates(0, tick >= next ? 1.9 * swing : 0) ? 1 : 0;
+    }
+    CHECK(found == 0);
+}
+
+TEST_CASE("a vibration is found again after torques that are not numbers") {
+    Watch watch({}, 1e-3, {{swing}});
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (const double torque : {nan, infinity, nan, -infinity, infinity, nan}) {
+        CHECK_FALSE(watch.vibrates(0, torque));
+    }
+    const Sine sine{25, 1.5 * swing, 1000};
+    int times = 0;
+    for (int tick = 0; tick < 1000; ++tick) {
+        times += watch.vibrates(0, sine.at(tick)) ? 1 : 0;
+    }
+    CHECK(times >= 4);
+}
+
+} // namespace vibration_watch_test
