@@ -74,7 +74,7 @@ JumpCause cause_of(const PositionJump& jump, const PositionJump* back) {
         return JumpCause::frames_replayed;
     }
     const bool wraps = jump.one_turn && !jump.after_silence;
-    if (back == nullptr && !wraps && is_near(jump.from_zero_rad, 0, jump.count_rad)) {
+    if (back == nullptr && !wraps && !jump.absolute && is_near(jump.from_zero_rad, 0, jump.count_rad)) {
         return JumpCause::zero_lost;
     }
     if (jump.turn) {

@@ -20,6 +20,7 @@ struct PositionJump {
     bool turn = false;               ///< whole turns of the encoder
     bool one_turn = false;           ///< one turn, like the wrap of a single-turn encoder
     bool after_silence = false;      ///< also after a fault or zeros, like a restart
+    bool absolute = false;           ///< the encoder cannot lose its zero
     bool replays = false;            ///< the positions after it repeat those of an earlier time
 
     double step_rad() const noexcept { return to_rad - from_rad; }

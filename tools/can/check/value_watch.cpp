@@ -90,12 +90,17 @@ void ValueWatch::note_jump(const hal::JointValue& value, double from_rad, bool a
                                 .period_s = mean_interval_s(),
                                 .turn = turns != 0,
                                 .one_turn = std::abs(turns) == 1,
-                                .after_silence = after_silence});
+                                .after_silence = after_silence,
+                                .absolute = limits_.encoder == hal::Encoder::absolute});
     }
 }
 
-/// Returns true if the positions after a silence begin at the device's zero, without a motion to there.
+/// Returns true if the positions after a silence begin at the device's zero, without a motion to there. An
+/// absolute encoder keeps its zero.
 bool ValueWatch::restarts(const hal::JointValue& value, std::int64_t step_ns, double step_rad) const {
+    if (limits_.encoder == hal::Encoder::absolute) {
+        return false;
+    }
     const double silence_s = seconds_of(step_ns);
     const double rounding_rad = few_counts * value.step_rad;
     const double in_a_period_rad = std::abs(last_speed_rad_per_s_) * mean_interval_s();

@@ -103,6 +103,24 @@ TEST_CASE("buscheck distinguishes an unsigned encoder that wraps from one that l
     CHECK(rules(bus, with_positions(sound(bus), wrapping)) == Names{"position_wrap"});
 }
 
+TEST_CASE("buscheck reports a lost zero after a silence unless the encoder is absolute") {
+    // The joint is 2,000 counts from its zero before a silence of 0.2 s, and at the zero after it.
+    BusDescription bus = drives();
+    const auto passes_zero = [](double time_s, std::int32_t) {
+        const auto sync = static_cast<std::int32_t>(std::lround(125 * time_s)); // 125 a second
+        return 80 * (250 - sync);
+    };
+    Frames frames = with_positions(sound(bus), passes_zero);
+    const std::int64_t begin_ns = frames.front().stamp_ns;
+    frames = without(frames, [&](const Frame& frame) {
+        const double time_s = 1e-9 * static_cast<double>(frame.stamp_ns - begin_ns);
+        return frame.id == 0x281 && time_s > 1.801 && time_s < 1.999;
+    });
+    CHECK(rules(bus, frames) == Names{"gaps", "zero_lost"});
+    bus.joint_limits.front().encoder = hal::Encoder::absolute;
+    CHECK(rules(bus, frames) == Names{"gaps"});
+}
+
 TEST_CASE("buscheck distinguishes a joint at rest at the wrap of its encoder from flipped bits") {
     const BusDescription bus = drives();
     DFDYN_SEEDED_ENGINE(engine);
