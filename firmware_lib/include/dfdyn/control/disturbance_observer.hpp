@@ -33,7 +33,7 @@ namespace dfdyn {
 /// finds that the torque of feedback and observer does so, the joint's bandwidth is halved, for good, down to
 /// `least_share`.
 ///
-/// If the joint is blocked, the estimate rises to its limit. Cost: 15 multiply-adds per joint and tick, 13 n
+/// If the joint is blocked, the estimate rises to its limit. Cost: 15 multiply-adds per joint and tick, 17 n
 /// + 2 scalars. Never allocates.
 template <class Scalar, int n>
 class DisturbanceObserver {
