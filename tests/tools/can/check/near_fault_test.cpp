@@ -121,6 +121,18 @@ TEST_CASE("buscheck reports a lost zero after a silence unless the encoder is ab
     CHECK(rules(bus, frames) == Names{"gaps"});
 }
 
+TEST_CASE("buscheck reports a jump to the encoder's zero as a lost zero unless the encoder is absolute") {
+    BusDescription bus = drives();
+    const auto jumps_to_zero = [](double time_s, std::int32_t) {
+        const auto sync = static_cast<std::int32_t>(std::lround(125 * time_s)); // 125 a second
+        return (sync < 250 ? 200'123 : 0) + 80 * (sync - 250);
+    };
+    const Frames frames = with_positions(sound(bus), jumps_to_zero);
+    CHECK(rules(bus, frames) == Names{"zero_lost"});
+    bus.joint_limits.front().encoder = hal::Encoder::absolute;
+    CHECK(rules(bus, frames) == Names{"position_jump"});
+}
+
 TEST_CASE("buscheck distinguishes a joint at rest at the wrap of its encoder from flipped bits") {
     const BusDescription bus = drives();
     DFDYN_SEEDED_ENGINE(engine);
