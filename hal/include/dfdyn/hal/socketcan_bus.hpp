@@ -43,10 +43,10 @@ struct SocketCanOptions {
 /// **Clock.** `now_ns` is CLOCK_MONOTONIC. The kernel stamps a frame in its interrupt handler with the wall
 /// clock (CLOCK_REALTIME). When the frame is read, its time stamp is converted by the difference of the two
 /// clocks at that time. Setting the wall clock (NTP, the user) therefore does not move the samples. Frames
-/// that were waiting meanwhile are converted by the difference before the change (see WallClock). If the
-/// controller has its own time stamps, they are used, converted by the smallest delay observed (see
-/// HardwareClock). `Frame::stamp_source` names the clock used; a frame without a usable time stamp gets the
-/// time of reading.
+/// that were waiting or being delivered meanwhile are converted by the difference before the change (see
+/// WallClock). If the controller has its own time stamps, they are used, converted by the smallest delay
+/// observed (see HardwareClock). `Frame::stamp_source` names the clock used; a frame without a usable time
+/// stamp gets the time of reading.
 ///
 /// **Losses.** Frames that the kernel dropped because nobody read them are counted as `dropped` when the next
 /// frame arrives.

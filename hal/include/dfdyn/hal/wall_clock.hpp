@@ -9,14 +9,15 @@ namespace dfdyn::hal {
 /// Converts wall-clock time stamps to the monotonic clock, even if the wall clock is set meanwhile. A time
 /// stamp is shifted by the difference of the two clocks when it is read. Frames that were waiting or being
 /// delivered while the wall clock was set need the difference before. They are recognised because only that
-/// difference places them between now and the last time at which no frame was waiting. Allocates nothing;
-/// O(1) per stamp.
+/// difference places them between now and the last time at which no frame was waiting. If the clock was set
+/// by less than `delivery_ns`, a stamp of these frames may be wrong by that. Allocates nothing; O(1) per
+/// stamp.
 class WallClock {
   public:
     /// A larger change of the difference means that the clock was set; slewing changes it by far less.
     static constexpr std::int64_t step_ns = 1'000'000;
-    /// A stamped frame can be read after at most this time. Its software interrupt usually delivers it at
-    /// once, but waits for a thread if the kernel is busy.
+    /// A stamped frame is assumed to be readable after at most this time. Its software interrupt usually
+    /// delivers it at once, but waits for a thread if the kernel is busy.
     static constexpr std::int64_t delivery_ns = 50'000'000;
 
     /// A converted time stamp.
