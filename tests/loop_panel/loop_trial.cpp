@@ -32,7 +32,7 @@ LoopTrial run_loop(const StrangersLoop& stranger, bool observer, const LoopModel
     trial.stop = loop.loop().state() == LoopState::running ? "" : name(loop.loop().cause());
     const JointVector& limit = *stranger.scenario.actuators.torque_limit;
     trial.step = peaks.torque_step().cwiseQuotient(limit).maxCoeff();
-    if (late_peaks.torque_step().size() > 0) {
+    if (late_peaks.torque_step().size() > 0) { // a loop that stops ends early
         trial.late_step = late_peaks.torque_step().cwiseQuotient(limit).maxCoeff();
     }
     trial.speed = peaks.speed().maxCoeff();

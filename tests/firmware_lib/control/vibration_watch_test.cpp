@@ -27,10 +27,10 @@ struct Sine {
 
 /// Number of times that the watch finds a vibration in 10 s.
 int found(const Sine& sine) {
-    Watch watch({}, 1 / sine.rate_hz, {{swing}});
+    Watch watch({}, 1 / sine.rate_hz);
     int times = 0;
     for (int tick = 0; tick < 10 * sine.rate_hz; ++tick) {
-        times += watch.vibrates(0, sine.at(tick)) ? 1 : 0;
+        times += watch.vibrates(0, sine.at(tick), swing) ? 1 : 0;
     }
     return times;
 }
@@ -49,9 +49,9 @@ TEST_CASE("motions, single steps and vibrations smaller than the swing are no vi
     CHECK(found({25, 0.4 * swing, 1000}) == 0);
     CHECK(found({2, 20 * swing, 1000}) == 0);
     CHECK(found({4, 20 * swing, 1000}) == 0);
-    Watch watch({}, 1e-3, {{swing}});
+    Watch watch({}, 1e-3);
     for (int tick = 0; tick < 20'000; ++tick) { // friction at a reversal, each quarter of a second
-        REQUIRE_FALSE(watch.vibrates(0, tick / 250 % 2 == 0 ? 10 : -10));
+        REQUIRE_FALSE(watch.vibrates(0, tick / 250 % 2 == 0 ? 10 : -10, swing));
     }
 }
 
@@ -61,29 +61,29 @@ TEST_CASE("noise and an encoder's counts are no vibration") {
     CAPTURE(height);
     std::normal_distribution<double> noise(0, height * swing);
     std::uniform_int_distribution<int> pause(4, 60);
-    Watch noisy({}, 1e-3, {{swing}}), counted({}, 1e-3, {{swing}});
+    Watch noisy({}, 1e-3), counted({}, 1e-3);
     int next = 0;
     int found = 0;
     for (int tick = 0; tick < 1'000'000; ++tick) {
-        found += noisy.vibrates(0, noise(engine)) ? 1 : 0;
+        found += noisy.vibrates(0, noise(engine), swing) ? 1 : 0;
         next = tick > next + 2 ? tick + pause(engine)
                                : next; // the rate's window contains a count for three ticks
-        found += counted.vibrates(0, tick >= next ? 1.9 * swing : 0) ? 1 : 0;
+        found += counted.vibrates(0, tick >= next ? 1.9 * swing : 0, swing) ? 1 : 0;
     }
     CHECK(found == 0);
 }
 
 TEST_CASE("a vibration is found again after torques that are not numbers") {
-    Watch watch({}, 1e-3, {{swing}});
+    Watch watch({}, 1e-3);
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     constexpr double infinity = std::numeric_limits<double>::infinity();
     for (const double torque : {nan, infinity, nan, -infinity, infinity, nan}) {
-        CHECK_FALSE(watch.vibrates(0, torque));
+        CHECK_FALSE(watch.vibrates(0, torque, swing));
     }
     const Sine sine{25, 1.5 * swing, 1000};
     int times = 0;
     for (int tick = 0; tick < 1000; ++tick) {
-        times += watch.vibrates(0, sine.at(tick)) ? 1 : 0;
+        times += watch.vibrates(0, sine.at(tick), swing) ? 1 : 0;
     }
     CHECK(times >= 4);
 }

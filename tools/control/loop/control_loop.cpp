@@ -229,7 +229,7 @@ JointVector ControlLoop::disturbance() {
         const JointVector torque = feedback_.torque(), rate = feedback_.error_rate();
         observer_.update(torque.data(), feed_forward_.inertia().data(), rate.data(), excess_.data());
     }
-    return Eigen::Map<const Eigen::VectorXd>(observer_.estimate().data(), zero_.size());
+    return joint_vector(observer_.estimate());
 }
 
 JointVector ControlLoop::gradually(const JointVector& wanted) {
@@ -289,7 +289,7 @@ JointVector ControlLoop::holding_torque() {
     }
     JointVector torque = feed_forward_.holding(where);
     if (!opposed(safe_stop_.cause(), actions_.stop())) {
-        torque += Eigen::Map<const Eigen::VectorXd>(observer_.lasting().data(), torque.size());
+        torque += joint_vector(observer_.lasting());
     }
     for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
         if (damped(joint)) {
@@ -332,10 +332,6 @@ bool ControlLoop::done() const noexcept {
     const double silent_s = config_.period_s * static_cast<double>(counters_.ticks - position_tick_);
     const bool over = told_ || limp() || silent_s >= give_up_s;
     return state() == LoopState::stopped && (!moved() || (brake_requested() && over));
-}
-
-std::vector<double> ControlLoop::bandwidth_share() const {
-    return {observer_.share().begin(), observer_.share().end()};
 }
 
 void ControlLoop::limit() {

@@ -133,8 +133,8 @@ class ControlLoop {
     /// Reference minus position, measured at the last tick or extrapolated, rad, at the time of the
     /// measurement.
     const JointVector& error() const noexcept { return error_; }
-    /// Share of each joint's observer bandwidth that vibrations left, 0 … 1.
-    std::vector<double> bandwidth_share() const;
+    /// Share of each joint's observer bandwidth that vibrations left, 1/256 … 1.
+    JointVector bandwidth_share() const { return joint_vector(observer_.share()); }
     const LoopCounters& counters() const noexcept { return counters_; }
     const FeedForward& feed_forward() const noexcept { return feed_forward_; }
 

@@ -14,13 +14,9 @@ Storage<double, dynamic> torques(const JointVector& values) {
     return result;
 }
 
-namespace {
-
 JointVector joint_vector(const Storage<double, dynamic>& values) {
     return Eigen::Map<const Eigen::VectorXd>(values.data(), values.size());
 }
-
-} // namespace
 
 FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                          std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,

@@ -14,6 +14,8 @@ namespace dfdyn::tools {
 
 /// Returns one torque per joint for the library's controllers.
 Storage<double, dynamic> torques(const JointVector& values);
+/// The reverse.
+JointVector joint_vector(const Storage<double, dynamic>& values);
 
 /// Torque for the reference: the torque of the nominal rigid body plus a learned torque, combined as in
 /// dfdyn::FeedForward. The learned part changes by at most the torque limit in 0.05 s.

@@ -35,8 +35,8 @@ void print_actions(std::ostream& out, const std::vector<TakenAction>& actions) {
     }
 }
 
-void print_vibrations(std::ostream& out, const std::vector<double>& share) {
-    for (std::size_t joint = 0; joint < share.size(); ++joint) {
+void print_vibrations(std::ostream& out, const JointVector& share) {
+    for (Eigen::Index joint = 0; joint < share.size(); ++joint) {
         if (share[joint] < 1) {
             out << "vibration: joint " << joint + 1 << " lowered the observer's bandwidth to "
                 << formatted("%.3g", share[joint]) << " of --observer-bandwidth\n";
@@ -124,7 +124,7 @@ nlohmann::ordered_json loop_json(const std::string& name, const ControlLoop& loo
                                 {"limp", loop.limp()},
                                 {"largest_torque_step_nm", values_of(peaks.torque_step())},
                                 {"largest_speed_rad_s", values_of(peaks.speed())},
-                                {"observer_bandwidth_share", loop.bandwidth_share()},
+                                {"observer_bandwidth_share", values_of(loop.bandwidth_share())},
                                 {"learning", nullptr},
                                 {"actions", nlohmann::ordered_json::array()}};
     if (const auto joint = loop.stopped_by()) {

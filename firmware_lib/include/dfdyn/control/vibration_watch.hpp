@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <utility>
 
 namespace dfdyn {
 
@@ -15,7 +14,8 @@ namespace dfdyn {
 /// in a row, each time within `longest_s` and by at least `swing`. Motions and friction at reversals turn the
 /// torque more slowly, or once. Noise and the counts of an encoder move it by most of the way in one tick:
 /// the largest change in a tick must be less than the way divided by `smooth`, unless the way is `large`
-/// swings. Cost: 5 comparisons and 2 multiply-adds per joint and tick; 8 n + 1 scalars. Never allocates.
+/// swings. Cost per joint and tick: 6 comparisons and 2 additions, at a turn 4 comparisons and 3
+/// multiply-adds more; 7 n + 1 scalars. Never allocates.
 template <class Scalar, int n>
 class VibrationWatch {
   public:
@@ -26,15 +26,15 @@ class VibrationWatch {
     static constexpr Scalar large = 3;  ///< way, by `swing`, for which `smooth` is not demanded
     static constexpr int turns = 8;     ///< four periods
 
-    /// `period_s`: of a control tick, > 0. `swing`: of each joint's torque from turn to turn, N·m, > 0.
-    VibrationWatch(Extent<n> joint_count, Scalar period_s, Torques swing) noexcept
-        : longest_ticks_(static_cast<std::int32_t>(longest_s / period_s)), swing_(std::move(swing)),
-          peak_(Torques::zeros(joint_count)), last_peak_(peak_), last_(peak_), change_(peak_),
-          direction_(Counts::zeros(joint_count)), ticks_(direction_), turns_(direction_) {}
+    /// `period_s`: of a control tick, > 0.
+    VibrationWatch(Extent<n> joint_count, Scalar period_s) noexcept
+        : longest_ticks_(static_cast<std::int32_t>(longest_s / period_s)), peak_(Torques::zeros(joint_count)),
+          last_peak_(peak_), last_(peak_), change_(peak_), direction_(Counts::zeros(joint_count)),
+          ticks_(direction_), turns_(direction_) {}
 
-    /// Adds the torque of joint `k` in this tick, N·m; one that is not finite is ignored. Returns whether the
-    /// joint has now turned `turns` times; the count then begins anew.
-    bool vibrates(int k, Scalar torque) noexcept {
+    /// Adds the torque of joint `k` in this tick, N·m; one that is not finite is ignored. `swing`: of the
+    /// joint, N·m, > 0. Returns whether the joint has now turned `turns` times; the count then begins anew.
+    bool vibrates(int k, Scalar torque, Scalar swing) noexcept {
         if (!std::isfinite(torque)) {
             return false;
         }
@@ -46,10 +46,10 @@ class VibrationWatch {
         if (back < 0) {
             peak_[k] = torque;
         }
-        if (back < swing_[k]) {
+        if (back < swing) {
             return false;
         }
-        turn(k, rises, torque);
+        turn(k, rises, torque, swing);
         const bool vibrates = turns_[k] >= turns;
         turns_[k] = vibrates ? 0 : turns_[k];
         return vibrates;
@@ -58,9 +58,9 @@ class VibrationWatch {
   private:
     using Counts = Storage<std::int32_t, n>;
 
-    void turn(int k, bool rises, Scalar torque) noexcept {
+    void turn(int k, bool rises, Scalar torque, Scalar swing) noexcept {
         const Scalar way = std::abs(peak_[k] - last_peak_[k]);
-        const bool even = way >= smooth * change_[k] || way >= large * swing_[k];
+        const bool even = way >= smooth * change_[k] || way >= large * swing;
         const bool counts = even && ticks_[k] <= longest_ticks_;
         turns_[k] = counts ? turns_[k] + 1 : 0;
         ticks_[k] = 0;
@@ -71,7 +71,6 @@ class VibrationWatch {
     }
 
     std::int32_t longest_ticks_;
-    Torques swing_;
     Torques peak_;      ///< extreme since the last turn, N·m
     Torques last_peak_; ///< the one before
     Torques last_;      ///< in the last tick
