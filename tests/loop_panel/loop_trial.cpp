@@ -3,10 +3,14 @@
 
 #include "tools/control/closed_loop.hpp"
 #include "tools/control/report/loop_peaks.hpp"
+#include "tools/control/report/loop_summary.hpp"
 #include "tools/control/report/tracking.hpp"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace dfdyn::tests {
 
@@ -41,6 +45,11 @@ LoopTrial run_loop(const StrangersLoop& stranger, bool observer, const LoopModel
         trial.error += window.all * window.all / static_cast<double>(tracking.windows().size());
     }
     trial.error = std::sqrt(trial.error);
+    std::ostringstream summary;
+    print_loop(summary, loop.loop());
+    trial.summary = summary.str();
+    trial.bandwidth_share =
+        loop_json("", loop.loop(), peaks).at("observer_bandwidth_share").get<std::vector<double>>();
     return trial;
 }
 

@@ -15,6 +15,7 @@
 namespace strangers_loop_test {
 
 using namespace dfdyn::tests;
+using Catch::Matchers::ContainsSubstring;
 using dfdyn::tools::LoopModel;
 
 constexpr double largest_step = 0.1; // of the limit, per tick
@@ -83,7 +84,12 @@ TEST_CASE("links that the default observer makes vibrate on elastic gears are ca
         const LoopTrial trial = run_loop(loop, true, nullptr, 12);
         CHECK(trial.stop.empty());
         CHECK(trial.late_step < 0.05);
-        CHECK(trial.error < run_loop(loop, false, nullptr, 12).error);
+        CHECK_THAT(trial.summary, ContainsSubstring("lowered the observer's bandwidth to "));
+        CHECK(std::ranges::min(trial.bandwidth_share) < 1);
+        const LoopTrial nominal = run_loop(loop, false, nullptr, 12);
+        CHECK(trial.error < nominal.error);
+        CHECK_THAT(nominal.summary, !ContainsSubstring("bandwidth"));
+        CHECK(std::ranges::min(nominal.bandwidth_share) == 1);
     }
 }
 

@@ -151,6 +151,35 @@ TEST_CASE("an observer that makes an elastic gear vibrate lowers its bandwidth u
     CHECK(run_on_elastic_gear(bandwidth / 16, 5).share == 1); // nothing to lower
 }
 
+/// Feeds `ticks` torques of a joint that vibrates at 25 Hz with 40 N·m from peak to peak.
+template <class AnyObserver>
+void vibrate(AnyObserver& observer, int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) {
+        const double feedback = 20 * std::sin(2 * 3.14159 * 25 * 1e-3 * tick);
+        observer.update(&feedback, &none, &none, &none);
+    }
+}
+
+TEST_CASE("vibrations lower a bandwidth for good, at most to its least share; a calm joint keeps it") {
+    Observer observer({}, {1e-3, {{bandwidth}}, {{1}}, {{unlimited}}, {{5}}});
+    vibrate(observer, 120); // six turns
+    observer.restart();
+    vibrate(observer, 120);
+    CHECK(observer.share()[0] == 1);
+    vibrate(observer, 10'000);
+    CHECK(observer.share()[0] == Observer::least_share);
+    observer.restart();
+    CHECK(observer.share()[0] == Observer::least_share);
+    for (const double swing : {0.0, unlimited, std::numeric_limits<double>::quiet_NaN()}) {
+        Observer unwatched({}, {1e-3, {{bandwidth}}, {{1}}, {{unlimited}}, {{swing}}});
+        vibrate(unwatched, 10'000);
+        CHECK(unwatched.share()[0] == 1);
+    }
+    Observer off({}, {1e-3, {{0}}, {{1}}, {{unlimited}}, {{5}}});
+    vibrate(off, 10'000);
+    CHECK(off.share()[0] == 1);
+}
+
 TEST_CASE("NaN inputs do not change the estimate") {
     DisturbanceObserver<float, 2> observer({}, {0.001F, {{20, 20}}, {{5, 5}}, {{5, 5}}, {{5, 5}}});
     const float inertia[] = {1, 1};

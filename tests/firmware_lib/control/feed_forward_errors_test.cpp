@@ -59,16 +59,26 @@ TEST_CASE("with an observer a fast error of a forecast counts more than a slow o
     CHECK(share_with(20) < 0.2);
 }
 
+/// Share of a forecast that is wrong by 90 N·m, beside a nominal torque that is wrong by ±40.
+double share_beside(double observer_limit, double observer_share) {
+    ObservedRun run(20, observer_limit);
+    run.forward.observer_share(0, observer_share);
+    for (int knot = 0; knot < 500; ++knot) {
+        run.go(ticks_per_sample * period_s, knot % 2 == 0 ? 40 : -40, 0, [](int) { return 90; });
+    }
+    return run.forward.share()[0];
+}
+
 TEST_CASE("a constant error counts only beyond the observer's limit") {
-    const auto share_with = [](double observer_limit) {
-        ObservedRun run(20, observer_limit);
-        for (int knot = 0; knot < 500; ++knot) { // the nominal torque is wrong by ±40 N·m, the forecast by 90
-            run.go(ticks_per_sample * period_s, knot % 2 == 0 ? 40 : -40, 0, [](int) { return 90; });
-        }
-        return run.forward.share()[0];
-    };
-    CHECK(share_with(100) > 0.7);
-    CHECK(share_with(30) < 0.2);
+    CHECK(share_beside(100, 1) > 0.7);
+    CHECK(share_beside(30, 1) < 0.2);
+}
+
+TEST_CASE("a constant error counts if vibrations lowered the observer's bandwidth") {
+    CHECK(share_beside(100, 1.0 / 256) < 0.2);
+    for (const double wrong : {-1.0, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
+        CHECK(share_beside(100, wrong) > 0.7);
+    }
 }
 
 TEST_CASE("a forecast that was absurd at one knot is used again within a second") {

@@ -73,6 +73,62 @@ TEST_CASE("noise and an encoder's counts are no vibration") {
     CHECK(found == 0);
 }
 
+TEST_CASE("smooth vibrations count from the swing on, jagged ones from three swings on") {
+    const double smooth = GENERATE(1.5, 2.0, 2.5); // from turn to turn, by the swing
+    CHECK(found({25, 0.5 * smooth * swing, 1000}) > 20);
+    // turns every other tick, half of the way in each: the sine of 250 Hz at 1 kHz
+    CHECK(found({250, 0.5 * smooth * swing, 1000}) == 0);
+    CHECK(found({250, 1.7 * swing, 1000}) > 500);
+}
+
+TEST_CASE("a vibration begins anew after a pause and after a restart") {
+    const Sine sine{25, 1.5 * swing, 1000};
+    const bool restarts = GENERATE(false, true);
+    const int pause = GENERATE(20, 101); // ticks; the watch waits 0.1 s for a turn
+    CAPTURE(restarts, pause);
+    Watch watch({}, 1 / sine.rate_hz);
+    int tick = 0;
+    while (tick < 1000 && !watch.vibrates(0, sine.at(tick), swing)) {
+        ++tick;
+    }
+    const int first = tick;              // eight turns from here to the next vibration
+    for (; tick < first + 130; ++tick) { // six of them
+        REQUIRE_FALSE(watch.vibrates(0, sine.at(tick), swing));
+    }
+    if (restarts) {
+        watch.restart();
+    }
+    for (int missing = 0; missing < pause; ++missing) {
+        watch.vibrates(0, std::numeric_limits<double>::quiet_NaN(), swing);
+    }
+    const int again = tick;
+    while (tick < 2000 && !watch.vibrates(0, sine.at(tick), swing)) {
+        ++tick;
+    }
+    CHECK((tick - again > 130) == (restarts || pause > 100));
+}
+
+TEST_CASE("without a swing nothing is found") {
+    Watch watch({}, 1e-3);
+    for (int tick = 0; tick < 1000; ++tick) {
+        REQUIRE_FALSE(watch.vibrates(0, 0, 0));
+        REQUIRE_FALSE(watch.vibrates(0, std::sin(0.2 * tick), std::numeric_limits<double>::quiet_NaN()));
+        REQUIRE_FALSE(watch.vibrates(0, std::sin(0.2 * tick), -1));
+    }
+}
+
+TEST_CASE("each joint is watched by itself, in float too") {
+    VibrationWatch<float, 2> watch({}, 1e-3F);
+    const Sine sine{25, 1.5 * swing, 1000};
+    int times[] = {0, 0};
+    for (int tick = 0; tick < 10'000; ++tick) {
+        times[0] += watch.vibrates(0, static_cast<float>(sine.at(tick)), swing) ? 1 : 0;
+        times[1] += watch.vibrates(1, static_cast<float>(10 * std::sin(1e-3 * tick)), swing) ? 1 : 0;
+    }
+    CHECK(times[0] >= 60);
+    CHECK(times[1] == 0);
+}
+
 TEST_CASE("a vibration is found again after torques that are not numbers") {
     Watch watch({}, 1e-3);
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();

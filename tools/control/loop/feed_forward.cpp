@@ -60,6 +60,12 @@ void FeedForward::enable_learned(bool on) noexcept {
     }
 }
 
+void FeedForward::observer_share(const Storage<double, dynamic>& share) {
+    for (int joint = 0; core_ && joint < share.size(); ++joint) {
+        core_->observer_share(joint, share[joint]);
+    }
+}
+
 void FeedForward::begin(std::int64_t time_ns, const Reference& start) {
     tick_ = 0;
     if (core_) {

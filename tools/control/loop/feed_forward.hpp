@@ -33,6 +33,9 @@ class FeedForward {
     /// Enables or disables the learned torque, without a step. Learning continues in both states.
     void enable_learned(bool on) noexcept;
 
+    /// Takes what vibrations left of the observer's bandwidth, 0 to 1 per joint.
+    void observer_share(const Storage<double, dynamic>& share);
+
     /// Begins the motion at `start`, at rest.
     void begin(std::int64_t time_ns, const Reference& start);
 

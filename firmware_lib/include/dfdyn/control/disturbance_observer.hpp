@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 namespace dfdyn {
@@ -31,11 +32,10 @@ namespace dfdyn {
 ///
 /// Elastic gears, of which the margin knows nothing, can make a joint vibrate. Each time `VibrationWatch`
 /// finds that the torque of feedback and observer does so, the joint's bandwidth is halved, for good, down to
-/// `least_share`.
+/// `least_share`. Give `share()` to `FeedForward`, which must know what the observer compensates.
 ///
 /// If the joint is blocked, the estimate rises to its limit. Cost: 16 multiply-adds per joint and tick, 3
-/// more at a turn, 16 n
-/// + 2 scalars. Never allocates.
+/// more at a turn; 16 n + 2 scalars. Never allocates.
 template <class Scalar, int n>
 class DisturbanceObserver {
   public:
@@ -50,7 +50,7 @@ class DisturbanceObserver {
         Torques bandwidth; ///< per joint, rad/s; ≥ 0 and below 1 / period
         Torques limit;     ///< of |estimate|, per joint, N·m; ≥ 0
         Torques step;      ///< usual limit of the change of b J de/dt in a tick, per joint, N·m; > 0
-        Torques swing;     ///< of feedback and estimate, from turn to turn of a vibration, N·m; > 0
+        Torques swing; ///< of feedback and estimate, from turn to turn of a vibration, N·m; 0: not watched
     };
 
     /// Starts without an estimate. `joint_count`: n.
@@ -61,9 +61,9 @@ class DisturbanceObserver {
         std::fill(share_.begin(), share_.end(), Scalar(1));
     }
 
-    /// Returns to the initial state: no estimate, no past. The watch for vibrations goes on, and what
-    /// they left of the bandwidths stays.
+    /// Returns to the initial state: no estimate, no past. What vibrations left of the bandwidths stays.
     void restart() noexcept {
+        watch_.restart();
         for (int k = 0; k < joints_; ++k) {
             integral_[k] = estimate_[k] = momentum_[k] = change_[k] = 0;
         }
@@ -82,6 +82,7 @@ class DisturbanceObserver {
         for (int k = 0; k < joints_; ++k) {
             const Scalar momentum = inertia[k] * error_rate[k];
             if (!std::isfinite(momentum) || !std::isfinite(feedback[k])) {
+                watch_.vibrates(k, std::numeric_limits<Scalar>::quiet_NaN(), settings_.swing[k]);
                 continue;
             }
             const Scalar bandwidth = bandwidth_for(momentum, k);
@@ -90,7 +91,8 @@ class DisturbanceObserver {
             const Scalar most = settings_.limit[k];
             integral_[k] = std::clamp(integral_[k] + (rise * excess[k] > 0 ? 0 : rise), -most, most);
             estimate_[k] = std::clamp(integral_[k] + fast, -most, most);
-            if (watch_.vibrates(k, feedback[k] + estimate_[k], settings_.swing[k])) {
+            if (watch_.vibrates(k, feedback[k] + estimate_[k], settings_.swing[k]) &&
+                settings_.bandwidth[k] > 0) {
                 share_[k] = std::max(share_[k] / 2, least_share);
             }
         }
@@ -104,7 +106,7 @@ class DisturbanceObserver {
     /// holds the arm when the loop ends.
     [[nodiscard]] const Torques& lasting() const noexcept { return integral_; }
 
-    /// Returns what vibrations left of each joint's bandwidth, `least_share` … 1; initially 1.
+    /// Returns what vibrations left of each joint's bandwidth, `least_share` … 1; 1 if that is 0.
     [[nodiscard]] const Torques& share() const noexcept { return share_; }
 
     /// Returns the largest number of multiply-adds of `update`.

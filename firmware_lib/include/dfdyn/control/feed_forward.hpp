@@ -91,7 +91,16 @@ class FeedForward {
           mix_(from_), ahead_(Torques::zeros(joints_)), share_(ahead_), part_(ahead_), torque_(ahead_),
           nominal_(ahead_), zero_(ahead_) {
         for (int k = 0; k < joints_; ++k) {
-            followed_[k] = std::min(settings_.bandwidth[k] * settings_.sample_period_s(), Scalar(1));
+            observer_share(k, Scalar(1));
+        }
+    }
+
+    /// Takes the part of `bandwidth` with which the observer of joint `k` works, 0 … 1; initially 1:
+    /// `DisturbanceObserver::share()`. Other values are ignored.
+    void observer_share(int k, Scalar share) noexcept {
+        if (share >= 0 && share <= 1) {
+            const Scalar gain = share * settings_.bandwidth[k] * settings_.sample_period_s();
+            followed_[k] = std::min(gain, Scalar(1));
         }
     }
 

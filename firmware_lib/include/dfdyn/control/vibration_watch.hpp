@@ -32,13 +32,22 @@ class VibrationWatch {
           last_peak_(peak_), last_(peak_), change_(peak_), direction_(Counts::zeros(joint_count)),
           ticks_(direction_), turns_(direction_) {}
 
-    /// Adds the torque of joint `k` in this tick, N·m; one that is not finite is ignored. `swing`: of the
-    /// joint, N·m, > 0. Returns whether the joint has now turned `turns` times; the count then begins anew.
+    /// Forgets the past of all joints.
+    void restart() noexcept {
+        for (int k = 0; k < peak_.size(); ++k) {
+            peak_[k] = last_peak_[k] = last_[k] = change_[k] = 0;
+            direction_[k] = ticks_[k] = turns_[k] = 0;
+        }
+    }
+
+    /// Adds the torque of joint `k` in this tick, N·m. If it is not finite, only the time passes. `swing`: of
+    /// the joint, N·m; one that is not > 0 finds nothing. Returns whether the joint has now turned `turns`
+    /// times; the count then begins anew.
     bool vibrates(int k, Scalar torque, Scalar swing) noexcept {
+        ticks_[k] = std::min(ticks_[k] + 1, longest_ticks_ + 1);
         if (!std::isfinite(torque)) {
             return false;
         }
-        ticks_[k] = std::min(ticks_[k] + 1, longest_ticks_ + 1);
         change_[k] = std::max(change_[k], std::abs(torque - last_[k]));
         last_[k] = torque;
         const bool rises = direction_[k] >= 0;
@@ -46,7 +55,7 @@ class VibrationWatch {
         if (back < 0) {
             peak_[k] = torque;
         }
-        if (back < swing) {
+        if (!(swing > 0) || back < swing) {
             return false;
         }
         turn(k, rises, torque, swing);
