@@ -52,9 +52,12 @@ void ValueWatch::take_position(const hal::JointValue& value) {
              (comparable && ((jumped(step_ns, step_rad) && !wraps) || restarts(value, step_ns, step_rad))));
     after_fault_ = false;
     silent_before_zero_ = zero_ && !was_zero ? silent : silent_before_zero_;
-    before_zero_rad_ = zero_ && !was_zero ? from_rad : before_zero_rad_;
+    if (zero_ && !was_zero) {
+        before_zero_rad_ = from_rad;
+        before_zero_ns_ = value.stamp_ns - step_ns;
+    }
     if (!comparable || zero_ || was_zero) {
-        take_zero(value, was_zero);
+        take_zero(value, step_ns, was_zero);
         return;
     }
     take_step(value, step_ns, step_rad);
@@ -63,15 +66,17 @@ void ValueWatch::take_position(const hal::JointValue& value) {
 }
 
 /// Counts zeros between other positions. Zeros from which the next positions continue are the first ones of
-/// an encoder that counts from there.
-void ValueWatch::take_zero(const hal::JointValue& value, bool was_zero) {
+/// an encoder that counts from there, unless the joint of an absolute one can have moved there meanwhile.
+void ValueWatch::take_zero(const hal::JointValue& value, std::int64_t step_ns, bool was_zero) {
     equal_ = 0;
     zeros_in_a_row_ = zero_ ? zeros_in_a_row_ + 1 : zeros_in_a_row_;
     zeros_ += zero_ ? 1 : 0;
     if (zero_ || !was_zero) {
         return;
     }
-    if (!jumped(value.stamp_ns - stamp_ns_, value.from_zero_rad)) {
+    const bool moved_there = limits_.encoder == hal::Encoder::absolute &&
+                             !jumped(value.stamp_ns - before_zero_ns_, value.position_rad - before_zero_rad_);
+    if (!moved_there && !jumped(step_ns, value.from_zero_rad)) {
         zeros_ -= zeros_in_a_row_;
         count_jump(true, value.position_rad - before_zero_rad_);
         note_jump(value, before_zero_rad_, silent_before_zero_);

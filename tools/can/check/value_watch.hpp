@@ -45,7 +45,7 @@ class ValueWatch {
     static constexpr std::size_t most_jumps = 64;
 
     void take_position(const hal::JointValue& value);
-    void take_zero(const hal::JointValue& value, bool was_zero);
+    void take_zero(const hal::JointValue& value, std::int64_t step_ns, bool was_zero);
     void take_step(const hal::JointValue& value, std::int64_t step_ns, double step_rad);
     bool restarts(const hal::JointValue& value, std::int64_t step_ns, double step_rad) const;
     double turns_of(double step_rad) const;
@@ -69,6 +69,7 @@ class ValueWatch {
     std::vector<PositionJump> first_jumps_; ///< at most `most_jumps`
     ReplayedPositions replayed_;
     double before_zero_rad_ = 0;      ///< last position before a zero of `zeros_`
+    std::int64_t before_zero_ns_ = 0; ///< its stamp
     bool silent_before_zero_ = false; ///< a silence or a fault before the zero
     std::uint64_t zeros_in_a_row_ = 0;
 

@@ -133,6 +133,17 @@ TEST_CASE("buscheck reports a jump to the encoder's zero as a lost zero unless t
     CHECK(rules(bus, frames) == Names{"position_jump"});
 }
 
+TEST_CASE("zeros of an absolute encoder remain zeros while its joint passes the zero") {
+    BusDescription bus = drives();
+    const auto drops_out = [](double time_s, std::int32_t) {
+        const auto sync = static_cast<std::int32_t>(std::lround(125 * time_s)); // 125 a second
+        return sync >= 240 && sync < 250 ? 0 : 123 + 2000 * (250 - sync);
+    };
+    const Frames frames = with_positions(sound(bus), drops_out);
+    bus.joint_limits.front().encoder = hal::Encoder::absolute;
+    CHECK(rules(bus, frames) == Names{"position_zeros"});
+}
+
 TEST_CASE("buscheck distinguishes a joint at rest at the wrap of its encoder from flipped bits") {
     const BusDescription bus = drives();
     DFDYN_SEEDED_ENGINE(engine);
