@@ -68,6 +68,31 @@ TEST_CASE("setting the wall clock moves no time stamp of a frame that the kernel
               .stamp_ns == read_ns);
 }
 
+TEST_CASE("setting the wall clock by little moves a frame's time stamp by at most that, and not for long") {
+    const std::int64_t step_ns = GENERATE(-20'000'000, -5'000'000, 5'000'000, 20'000'000);
+    const std::int64_t delay_ns = GENERATE(200'000, 20'000'000, 60'000'000);
+    CAPTURE(step_ns, delay_ns);
+    WallClock clock;
+    clock.nothing_waiting(5 * second_ns, boot_ns + 5 * second_ns);
+    const std::int64_t set_ns = 6 * second_ns;
+    clock.nothing_waiting(set_ns, boot_ns + set_ns + step_ns);
+    clock.nothing_waiting(set_ns + delay_ns - 1000, boot_ns + set_ns + delay_ns - 1000 + step_ns);
+    const std::int64_t read_ns = set_ns + delay_ns;
+    for (const bool old_time : {true, false}) {
+        const std::int64_t taken_ns = old_time ? set_ns : read_ns;
+        const auto [stamp_ns, plausible] = clock.to_monotonic(boot_ns + taken_ns + (old_time ? 0 : step_ns),
+                                                              read_ns, boot_ns + read_ns + step_ns);
+        CAPTURE(old_time);
+        CHECK((plausible || stamp_ns == read_ns));
+        CHECK(stamp_ns <= read_ns);
+        CHECK(std::abs(stamp_ns - taken_ns) <= std::max(std::abs(step_ns), old_time ? delay_ns : 0));
+    }
+    const std::int64_t later_ns = set_ns + second_ns; // the old difference is forgotten
+    clock.nothing_waiting(later_ns, boot_ns + later_ns + step_ns);
+    CHECK(clock.to_monotonic(boot_ns + later_ns + step_ns, later_ns + 10, boot_ns + later_ns + 10 + step_ns)
+              .stamp_ns == later_ns);
+}
+
 TEST_CASE("a time stamp that no difference of the clocks explains becomes the time of reading") {
     WallClock clock;
     clock.nothing_waiting(5 * second_ns, boot_ns + 5 * second_ns);
