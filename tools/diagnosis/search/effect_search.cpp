@@ -132,11 +132,17 @@ void keep_best(Step& best, const SearchProblem& problem, const std::vector<Chose
     }
 }
 
-/// Replaces `best` by the best model with one of the `ranked` candidates added to `chosen`.
+/// Replaces `best` by the best model with one of the `ranked` candidates added to `chosen`: of the first
+/// three, or the next that is admissible. Each may give another effect an inadmissible sign.
 void keep_best_addition(Step& best, const SearchProblem& problem, const std::vector<ChosenShape>& chosen,
                         const std::vector<Replacement>& ranked) {
-    constexpr std::size_t tried = 3; // the first one may give another effect an inadmissible sign
-    for (std::size_t i = 0; i < std::min(tried, ranked.size()) && ranked[i].score > best.score; ++i) {
+    constexpr std::size_t tried = 3;
+    constexpr std::size_t most_tried = 24;
+    const double before = best.score;
+    for (std::size_t i = 0; i < std::min(most_tried, ranked.size()) && ranked[i].score > best.score; ++i) {
+        if (i >= tried && best.score > before) {
+            break;
+        }
         std::vector<ChosenShape> more = chosen;
         more.push_back(ranked[i].with);
         keep_best(best, problem, more);

@@ -5,7 +5,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 
+#include <Eigen/QR>
+
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace effect_search_test {
@@ -113,6 +116,25 @@ TEST_CASE("the search chooses at most one effect of a family and only allowed co
     problem.candidates[0].family = problem.candidates[1].family = 1;
     problem.candidates[2].shapes[0].allowed = positive;
     CHECK(found(problem) == std::vector<std::size_t>{0});
+}
+
+TEST_CASE("an effect is found behind many candidates that would give another one an inadmissible sign") {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr Index copies = 5;
+    const Eigen::HouseholderQR<MatrixXd> factor(random_columns(3 + copies, engine));
+    const MatrixXd exact = std::sqrt(rows) * (factor.householderQ() * MatrixXd::Identity(rows, 3 + copies));
+    MatrixXd columns = exact.rightCols(2 + copies);
+    columns.col(0) = exact.col(0);
+    columns.col(1) = exact.col(2);
+    for (Index copy = 2; copy < columns.cols(); ++copy) { // in a model with one, column 0 is negative
+        columns.col(copy) = exact.col(0) + 0.5 * exact.col(1) + 0.01 * exact.col(1 + copy);
+    }
+    SearchProblem problem = problem_of(columns, 1.5 * exact.col(0) + exact.col(1) + 0.16 * exact.col(2));
+    problem.candidates[0].shapes.front().allowed = positive;
+    for (std::size_t copy = 2; copy < problem.candidates.size(); ++copy) {
+        problem.candidates[copy].evidence_offset = 955; // explains more than column 0, at a higher price
+    }
+    CHECK(found(problem) == std::vector<std::size_t>{0, 1});
 }
 
 TEST_CASE("a copy of a chosen column is not added and a near copy is the closest alternative") {
