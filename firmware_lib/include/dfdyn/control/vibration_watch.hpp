@@ -14,7 +14,7 @@ namespace dfdyn {
 /// in a row, each time within `longest_s` and by at least `swing`. Motions and friction at reversals turn the
 /// torque more slowly, or once. Noise and the counts of an encoder move it by most of the way in one tick:
 /// the largest change in a tick must be less than the way divided by `smooth`, unless the way is `large`
-/// swings. Cost per joint and tick: 6 comparisons and 2 additions, at a turn 4 comparisons and 3
+/// swings. Cost per joint and tick: 7 comparisons and 2 additions, at a turn 4 comparisons and 3
 /// multiply-adds more; 7 n + 1 scalars. Never allocates.
 template <class Scalar, int n>
 class VibrationWatch {
