@@ -57,7 +57,7 @@ void ValueWatch::take_position(const hal::JointValue& value) {
         before_zero_ns_ = value.stamp_ns - step_ns;
     }
     if (!comparable || zero_ || was_zero) {
-        take_zero(value, step_ns, was_zero);
+        take_zero(value, was_zero);
         return;
     }
     take_step(value, step_ns, step_rad);
@@ -67,16 +67,17 @@ void ValueWatch::take_position(const hal::JointValue& value) {
 
 /// Counts zeros between other positions. Zeros from which the next positions continue are the first ones of
 /// an encoder that counts from there, unless the joint of an absolute one can have moved there meanwhile.
-void ValueWatch::take_zero(const hal::JointValue& value, std::int64_t step_ns, bool was_zero) {
+void ValueWatch::take_zero(const hal::JointValue& value, bool was_zero) {
     equal_ = 0;
     zeros_in_a_row_ = zero_ ? zeros_in_a_row_ + 1 : zeros_in_a_row_;
     zeros_ += zero_ ? 1 : 0;
     if (zero_ || !was_zero) {
         return;
     }
-    const bool moved_there = limits_.encoder == hal::Encoder::absolute &&
-                             !jumped(value.stamp_ns - before_zero_ns_, value.position_rad - before_zero_rad_);
-    if (!moved_there && !jumped(step_ns, value.from_zero_rad)) {
+    const bool can_have_moved =
+        limits_.encoder == hal::Encoder::absolute &&
+        !jumped(value.stamp_ns - before_zero_ns_, value.position_rad - before_zero_rad_);
+    if (!can_have_moved && !jumped(0, value.from_zero_rad)) {
         zeros_ -= zeros_in_a_row_;
         count_jump(true, value.position_rad - before_zero_rad_);
         note_jump(value, before_zero_rad_, silent_before_zero_);

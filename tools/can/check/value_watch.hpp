@@ -45,7 +45,7 @@ class ValueWatch {
     static constexpr std::size_t most_jumps = 64;
 
     void take_position(const hal::JointValue& value);
-    void take_zero(const hal::JointValue& value, std::int64_t step_ns, bool was_zero);
+    void take_zero(const hal::JointValue& value, bool was_zero);
     void take_step(const hal::JointValue& value, std::int64_t step_ns, double step_rad);
     bool restarts(const hal::JointValue& value, std::int64_t step_ns, double step_rad) const;
     double turns_of(double step_rad) const;

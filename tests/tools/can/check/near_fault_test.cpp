@@ -140,6 +140,7 @@ TEST_CASE("zeros of an absolute encoder remain zeros while its joint passes the 
         return sync >= 240 && sync < 250 ? 0 : 123 + 2000 * (250 - sync);
     };
     const Frames frames = with_positions(sound(bus), drops_out);
+    CHECK(rules(bus, frames) == Names{"zero_lost"});
     bus.joint_limits.front().encoder = hal::Encoder::absolute;
     CHECK(rules(bus, frames) == Names{"position_zeros"});
 }
