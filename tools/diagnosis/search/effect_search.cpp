@@ -133,7 +133,7 @@ void keep_best(Step& best, const SearchProblem& problem, const std::vector<Chose
 }
 
 /// Replaces `best` by the best model with one of the `ranked` candidates added to `chosen`: of the first
-/// three, or the next that is admissible. Each may give another effect an inadmissible sign.
+/// three or, if none is better, the next one that is. Each may give another effect an inadmissible sign.
 void keep_best_addition(Step& best, const SearchProblem& problem, const std::vector<ChosenShape>& chosen,
                         const std::vector<Replacement>& ranked) {
     constexpr std::size_t tried = 3;
