@@ -174,7 +174,7 @@ class JointController {
             observer_.update(feedback.data(), inertia.data(), error_rate.data(), excess_.data());
         bool exact = true;
         for (int k = 0; k < joints; ++k) {
-            forward_.observer_share(k, observer_.share()[k]);
+            forward_.observer_bandwidth_share(k, observer_.share()[k]);
             if (missed_[k] == 0) {
                 approach(k, feedback[k] + disturbance[k]);
             } else if (missed_[k] > hold_ticks) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <numbers>
 
 namespace disturbance_observer_test {
 
@@ -152,15 +153,14 @@ TEST_CASE("an observer that makes an elastic gear vibrate lowers its bandwidth u
 }
 
 /// Feeds `ticks` torques of a joint that vibrates at 25 Hz with 40 N·m from peak to peak.
-template <class AnyObserver>
-void vibrate(AnyObserver& observer, int ticks) {
+void vibrate(Observer& observer, int ticks) {
     for (int tick = 0; tick < ticks; ++tick) {
-        const double feedback = 20 * std::sin(2 * 3.14159 * 25 * 1e-3 * tick);
+        const double feedback = 20 * std::sin(2 * std::numbers::pi * 25 * 1e-3 * tick);
         observer.update(&feedback, &none, &none, &none);
     }
 }
 
-TEST_CASE("vibrations lower a bandwidth for good, at most to its least share; a calm joint keeps it") {
+TEST_CASE("vibrations lower a bandwidth for good, at most to its least share; none that is not watched") {
     Observer observer({}, {1e-3, {{bandwidth}}, {{1}}, {{unlimited}}, {{5}}});
     vibrate(observer, 120); // six turns
     observer.restart();

@@ -60,9 +60,9 @@ TEST_CASE("with an observer a fast error of a forecast counts more than a slow o
 }
 
 /// Share of a forecast that is wrong by 90 N·m, beside a nominal torque that is wrong by ±40.
-double share_beside(double observer_limit, double observer_share) {
+double share_beside(double observer_limit, double bandwidth_share) {
     ObservedRun run(20, observer_limit);
-    run.forward.observer_share(0, observer_share);
+    run.forward.observer_bandwidth_share(0, bandwidth_share);
     for (int knot = 0; knot < 500; ++knot) {
         run.go(ticks_per_sample * period_s, knot % 2 == 0 ? 40 : -40, 0, [](int) { return 90; });
     }

@@ -91,6 +91,7 @@ TEST_CASE("a vibration begins anew after a pause and after a restart") {
     while (tick < 1000 && !watch.vibrates(0, sine.at(tick), swing)) {
         ++tick;
     }
+    REQUIRE(tick < 1000);
     const int first = tick;              // eight turns from here to the next vibration
     for (; tick < first + 130; ++tick) { // six of them
         REQUIRE_FALSE(watch.vibrates(0, sine.at(tick), swing));
@@ -99,17 +100,18 @@ TEST_CASE("a vibration begins anew after a pause and after a restart") {
         watch.restart();
     }
     for (int missing = 0; missing < pause; ++missing) {
-        watch.vibrates(0, std::numeric_limits<double>::quiet_NaN(), swing);
+        watch.pass(0);
     }
     const int again = tick;
     while (tick < 2000 && !watch.vibrates(0, sine.at(tick), swing)) {
         ++tick;
     }
+    CHECK(tick - again < 250);
     CHECK((tick - again > 130) == (restarts || pause > 100));
 }
 
 TEST_CASE("without a swing nothing is found") {
-    const double none = GENERATE(0.0, -1.0);
+    const double none = GENERATE(0.0, -1.0, std::numeric_limits<double>::quiet_NaN());
     CAPTURE(none);
     Watch watch({}, 1e-3);
     for (int tick = 0; tick < 1000; ++tick) {

@@ -39,6 +39,7 @@ void ValueWatch::take_position(const hal::JointValue& value) {
     ++positions_;
     const std::int64_t step_ns = value.stamp_ns - stamp_ns_;
     const double from_rad = position_rad_;
+    const std::int64_t from_ns = stamp_ns_;
     const double step_rad = value.position_rad - from_rad;
     const bool comparable = started_ && step_ns > 0;
     started_ = true;
@@ -54,7 +55,7 @@ void ValueWatch::take_position(const hal::JointValue& value) {
     silent_before_zero_ = zero_ && !was_zero ? silent : silent_before_zero_;
     if (zero_ && !was_zero) {
         before_zero_rad_ = from_rad;
-        before_zero_ns_ = value.stamp_ns - step_ns;
+        before_zero_ns_ = from_ns;
     }
     if (!comparable || zero_ || was_zero) {
         take_zero(value, was_zero);

@@ -228,7 +228,7 @@ JointVector ControlLoop::disturbance() {
     if (feedback_.regular()) {
         const JointVector torque = feedback_.torque(), rate = feedback_.error_rate();
         observer_.update(torque.data(), feed_forward_.inertia().data(), rate.data(), excess_.data());
-        feed_forward_.observer_share(observer_.share());
+        feed_forward_.observer_bandwidth_share(observer_.share());
     }
     return joint_vector(observer_.estimate());
 }

@@ -60,9 +60,9 @@ void FeedForward::enable_learned(bool on) noexcept {
     }
 }
 
-void FeedForward::observer_share(const Storage<double, dynamic>& share) {
+void FeedForward::observer_bandwidth_share(const Storage<double, dynamic>& share) {
     for (int joint = 0; core_ && joint < share.size(); ++joint) {
-        core_->observer_share(joint, share[joint]);
+        core_->observer_bandwidth_share(joint, share[joint]);
     }
 }
 

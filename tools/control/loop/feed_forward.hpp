@@ -34,7 +34,7 @@ class FeedForward {
     void enable_learned(bool on) noexcept;
 
     /// Takes what vibrations left of the observer's bandwidth, 0 to 1 per joint.
-    void observer_share(const Storage<double, dynamic>& share);
+    void observer_bandwidth_share(const Storage<double, dynamic>& share);
 
     /// Begins the motion at `start`, at rest.
     void begin(std::int64_t time_ns, const Reference& start);

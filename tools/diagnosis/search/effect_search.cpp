@@ -136,11 +136,11 @@ void keep_best(Step& best, const SearchProblem& problem, const std::vector<Chose
 /// three or, if none is better, the next one that is. Each may give another effect an inadmissible sign.
 void keep_best_addition(Step& best, const SearchProblem& problem, const std::vector<ChosenShape>& chosen,
                         const std::vector<Replacement>& ranked) {
-    constexpr std::size_t tried = 3;
+    constexpr std::size_t always_tried = 3;
     constexpr std::size_t most_tried = 24;
     const double before = best.score;
     for (std::size_t i = 0; i < std::min(most_tried, ranked.size()) && ranked[i].score > best.score; ++i) {
-        if (i >= tried && best.score > before) {
+        if (i >= always_tried && best.score > before) {
             break;
         }
         std::vector<ChosenShape> more = chosen;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 namespace dfdyn {
@@ -32,7 +31,7 @@ namespace dfdyn {
 ///
 /// Elastic gears, of which the margin knows nothing, can make a joint vibrate. Each time `VibrationWatch`
 /// finds that the torque of feedback and observer does so, the joint's bandwidth is halved, for good, down to
-/// `least_share`. Give `share()` to `FeedForward`, which must know what the observer compensates.
+/// `least_share`. Pass `share()` to `FeedForward::observer_bandwidth_share`.
 ///
 /// If the joint is blocked, the estimate rises to its limit. Cost: 16 multiply-adds per joint and tick, 3
 /// more at a turn; 16 n + 2 scalars. Never allocates.
@@ -50,7 +49,8 @@ class DisturbanceObserver {
         Torques bandwidth; ///< per joint, rad/s; ≥ 0 and below 1 / period
         Torques limit;     ///< of |estimate|, per joint, N·m; ≥ 0
         Torques step;      ///< usual limit of the change of b J de/dt in a tick, per joint, N·m; > 0
-        Torques swing; ///< of feedback and estimate, from turn to turn of a vibration, N·m; 0: not watched
+        Torques
+            swing; ///< of feedback and estimate, from turn to turn of a vibration, N·m; ≥ 0; 0: not watched
     };
 
     /// Starts without an estimate. `joint_count`: n.
@@ -82,7 +82,7 @@ class DisturbanceObserver {
         for (int k = 0; k < joints_; ++k) {
             const Scalar momentum = inertia[k] * error_rate[k];
             if (!std::isfinite(momentum) || !std::isfinite(feedback[k])) {
-                watch_.vibrates(k, std::numeric_limits<Scalar>::quiet_NaN(), settings_.swing[k]);
+                watch_.pass(k);
                 continue;
             }
             const Scalar bandwidth = bandwidth_for(momentum, k);
@@ -106,7 +106,7 @@ class DisturbanceObserver {
     /// holds the arm when the loop ends.
     [[nodiscard]] const Torques& lasting() const noexcept { return integral_; }
 
-    /// Returns what vibrations left of each joint's bandwidth, `least_share` … 1; 1 if that is 0.
+    /// Returns what vibrations left of each joint's bandwidth, `least_share` … 1; 1 for a bandwidth of 0.
     [[nodiscard]] const Torques& share() const noexcept { return share_; }
 
     /// Returns the largest number of multiply-adds of `update`.

@@ -56,6 +56,7 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 ///     begin(now, position);                              // the arm rests at the reference's start
 ///     each control tick:
 ///         torque = update(reference, nominal) + feedback + observer;  limited
+///         observer_bandwidth_share(k, observer.share()[k]);      // of each joint
 ///         commanded(torque);
 ///         measured(time, position, torque that was in effect then);   // nullptr if unknown
 ///
@@ -91,13 +92,13 @@ class FeedForward {
           mix_(from_), ahead_(Torques::zeros(joints_)), share_(ahead_), part_(ahead_), torque_(ahead_),
           nominal_(ahead_), zero_(ahead_) {
         for (int k = 0; k < joints_; ++k) {
-            observer_share(k, Scalar(1));
+            observer_bandwidth_share(k, Scalar(1));
         }
     }
 
-    /// Takes the part of `bandwidth` with which the observer of joint `k` works, 0 … 1; initially 1:
-    /// `DisturbanceObserver::share()`. Other values are ignored. Cost: 2 multiplications.
-    void observer_share(int k, Scalar share) noexcept {
+    /// Takes what vibrations left of the observer's `bandwidth` at joint `k`, 0 … 1; initially 1:
+    /// `DisturbanceObserver::share()`. Other values are ignored. `begin` keeps it. Cost: 2 multiplications.
+    void observer_bandwidth_share(int k, Scalar share) noexcept {
         if (share >= 0 && share <= 1) {
             const Scalar gain = share * settings_.bandwidth[k] * settings_.sample_period_s();
             followed_[k] = std::min(gain, Scalar(1));

@@ -40,11 +40,14 @@ class VibrationWatch {
         }
     }
 
-    /// Adds the torque of joint `k` in this tick, N·m. If it is not finite, only the time passes. `swing`: of
-    /// the joint, N·m; one that is not > 0 finds nothing. Returns whether the joint has now turned `turns`
-    /// times; the count then begins anew.
+    /// Passes a tick without a torque of joint `k`.
+    void pass(int k) noexcept { ticks_[k] = std::min(ticks_[k] + 1, longest_ticks_ + 1); }
+
+    /// Adds the torque of joint `k` in this tick, N·m. One that is not finite is none. `swing`: of the joint,
+    /// N·m; one that is not > 0 finds nothing. Returns whether the joint has now turned `turns` times; the
+    /// count then begins anew.
     bool vibrates(int k, Scalar torque, Scalar swing) noexcept {
-        ticks_[k] = std::min(ticks_[k] + 1, longest_ticks_ + 1);
+        pass(k);
         if (!std::isfinite(torque)) {
             return false;
         }

@@ -123,7 +123,7 @@ TEST_CASE("an effect is found behind many candidates that would give another one
     constexpr Index copies = 5;
     const Eigen::HouseholderQR<MatrixXd> factor(random_columns(3 + copies, engine));
     const MatrixXd exact = std::sqrt(rows) * (factor.householderQ() * MatrixXd::Identity(rows, 3 + copies));
-    MatrixXd columns = exact.rightCols(2 + copies);
+    MatrixXd columns(rows, 2 + copies);
     columns.col(0) = exact.col(0);
     columns.col(1) = exact.col(2);
     for (Index copy = 2; copy < columns.cols(); ++copy) { // in a model with one, column 0 is negative
@@ -132,7 +132,7 @@ TEST_CASE("an effect is found behind many candidates that would give another one
     SearchProblem problem = problem_of(columns, 1.5 * exact.col(0) + exact.col(1) + 0.16 * exact.col(2));
     problem.candidates[0].shapes.front().allowed = positive;
     for (std::size_t copy = 2; copy < problem.candidates.size(); ++copy) {
-        problem.candidates[copy].evidence_offset = 955; // explains more than column 0, at a higher price
+        problem.candidates[copy].evidence_offset = 955; // explains 950 more than column 0
     }
     CHECK(found(problem) == std::vector<std::size_t>{0, 1});
 }
