@@ -103,46 +103,50 @@ TEST_CASE("buscheck distinguishes an unsigned encoder that wraps from one that l
     CHECK(rules(bus, with_positions(sound(bus), wrapping)) == Names{"position_wrap"});
 }
 
+/// Number of a SYNC; there are 125 a second.
+std::int32_t sync_at(double time_s) { return static_cast<std::int32_t>(std::lround(125 * time_s)); }
+
+/// The same bus with an absolute encoder at joint 1.
+BusDescription absolute_drives() {
+    BusDescription bus = drives();
+    bus.joint_limits.front().encoder = hal::Encoder::absolute;
+    return bus;
+}
+
 TEST_CASE("buscheck reports a lost zero after a silence unless the encoder is absolute") {
     // The joint is 2,000 counts from its zero before a silence of 0.2 s, and at the zero after it.
-    BusDescription bus = drives();
     const auto passes_zero = [](double time_s, std::int32_t) {
-        const auto sync = static_cast<std::int32_t>(std::lround(125 * time_s)); // 125 a second
+        const std::int32_t sync = sync_at(time_s);
         return 80 * (250 - sync);
     };
-    Frames frames = with_positions(sound(bus), passes_zero);
+    Frames frames = with_positions(sound(drives()), passes_zero);
     const std::int64_t begin_ns = frames.front().stamp_ns;
     frames = without(frames, [&](const Frame& frame) {
         const double time_s = 1e-9 * static_cast<double>(frame.stamp_ns - begin_ns);
         return frame.id == 0x281 && time_s > 1.801 && time_s < 1.999;
     });
-    CHECK(rules(bus, frames) == Names{"gaps", "zero_lost"});
-    bus.joint_limits.front().encoder = hal::Encoder::absolute;
-    CHECK(rules(bus, frames) == Names{"gaps"});
+    CHECK(rules(drives(), frames) == Names{"gaps", "zero_lost"});
+    CHECK(rules(absolute_drives(), frames) == Names{"gaps"});
 }
 
 TEST_CASE("buscheck reports a jump to the encoder's zero as a lost zero unless the encoder is absolute") {
-    BusDescription bus = drives();
     const auto jumps_to_zero = [](double time_s, std::int32_t) {
-        const auto sync = static_cast<std::int32_t>(std::lround(125 * time_s)); // 125 a second
+        const std::int32_t sync = sync_at(time_s);
         return (sync < 250 ? 200'123 : 0) + 80 * (sync - 250);
     };
-    const Frames frames = with_positions(sound(bus), jumps_to_zero);
-    CHECK(rules(bus, frames) == Names{"zero_lost"});
-    bus.joint_limits.front().encoder = hal::Encoder::absolute;
-    CHECK(rules(bus, frames) == Names{"position_jump"});
+    const Frames frames = with_positions(sound(drives()), jumps_to_zero);
+    CHECK(rules(drives(), frames) == Names{"zero_lost"});
+    CHECK(rules(absolute_drives(), frames) == Names{"position_jump"});
 }
 
 TEST_CASE("zeros of an absolute encoder remain zeros while its joint passes the zero") {
-    BusDescription bus = drives();
     const auto drops_out = [](double time_s, std::int32_t) {
-        const auto sync = static_cast<std::int32_t>(std::lround(125 * time_s)); // 125 a second
+        const std::int32_t sync = sync_at(time_s);
         return sync >= 240 && sync < 250 ? 0 : 123 + 2000 * (250 - sync);
     };
-    const Frames frames = with_positions(sound(bus), drops_out);
-    CHECK(rules(bus, frames) == Names{"zero_lost"});
-    bus.joint_limits.front().encoder = hal::Encoder::absolute;
-    CHECK(rules(bus, frames) == Names{"position_zeros"});
+    const Frames frames = with_positions(sound(drives()), drops_out);
+    CHECK(rules(drives(), frames) == Names{"zero_lost"});
+    CHECK(rules(absolute_drives(), frames) == Names{"position_zeros"});
 }
 
 TEST_CASE("buscheck distinguishes a joint at rest at the wrap of its encoder from flipped bits") {
