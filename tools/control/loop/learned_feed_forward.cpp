@@ -73,8 +73,7 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
     : sample_period_ns_(std::llround(model.sample_period_s * 1e9)),
       lags_(std::max(model.input.lags, model.physics ? model.physics->motion.lags : 0)) {
     check_loop_model(model, joints, source);
-    std::unique_ptr<RuntimeEstimator>& estimator = learner_.estimator;
-    estimator = make_estimator(impatient(model), from_prior);
+    auto estimator = make_estimator(impatient(model), from_prior);
     if (monitor != nullptr) {
         auto watched = monitored(std::move(estimator), *monitor);
         monitor_ = watched.get();
@@ -85,43 +84,41 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
         contacts_ = watched.get();
         estimator = std::move(watched);
     }
-    follower_ = make_estimator(model, from_prior);
+    learners_.emplace_back(std::move(estimator), make_estimator(model, from_prior), ticks);
     if (structure_of(model).coupled()) {
         for (const double memory_s : physics_memories_s) {
-            physics_.push_back({.estimator = make_estimator(physics_of(model, memory_s), true)});
+            const TrainedModel physics = physics_of(model, memory_s);
+            learners_.emplace_back(make_estimator(physics, true), make_estimator(physics, true), ticks);
         }
-    }
-    const auto prepare = [&](Learner& one) {
-        one.share = share_of(one.estimator->cost(), ticks);
-        one.weights.resize(follower_->weight_count());
-        one.take_over();
-    };
-    prepare(learner_);
-    for (Learner& physics : physics_) {
-        prepare(physics);
     }
     prediction_.resize(static_cast<std::size_t>(joints));
     forecasts_at_rest_.resize(static_cast<std::size_t>(forecast_count()) * prediction_.size());
 }
 
+LearnedFeedForward::Learner::Learner(std::unique_ptr<RuntimeEstimator> learning,
+                                     std::unique_ptr<RuntimeEstimator> following, int ticks)
+    : estimator(std::move(learning)), follower(std::move(following)),
+      share(share_of(estimator->cost(), ticks)), weights(follower->weight_count()) {
+    take_over();
+}
+
 void LearnedFeedForward::begin(std::int64_t time_ns, const double* position) {
     begin_ns_ = time_ns;
-    learner_.estimator->begin_recording();
-    for (Learner& physics : physics_) {
-        physics.estimator->begin_recording();
+    for (Learner& learner : learners_) {
+        learner.estimator->begin_recording();
+        learner.follower->begin_recording();
     }
-    follower_->begin_recording();
     for (int lag = lags_; lag >= 0; --lag) {
-        follower_->tick({time_ns - lag * sample_period_ns_, of_joints(position), {}, {}, {}});
+        follow(time_ns - lag * sample_period_ns_, position);
     }
 }
 
 void LearnedFeedForward::learn(std::int64_t time_ns, const double* position, const double* torque) {
     const std::span<const double> output = torque != nullptr ? of_joints(torque) : std::span<const double>();
     const MeasuredSample sample{time_ns, of_joints(position), {}, {}, output};
-    const Status status = learner_.learn(sample);
+    const Status status = learners_.front().learn(sample);
     const bool touched = contact_joint() >= 0;
-    for (Learner& physics : physics_) { // does not learn a contact, either
+    for (Learner& physics : std::span(learners_).subspan(1)) { // does not learn a contact, either
         physics.learn(touched ? MeasuredSample{time_ns, of_joints(position), {}, {}, {}} : sample);
     }
     counters_.samples += torque != nullptr ? 1 : 0;
@@ -142,9 +139,8 @@ RecordedChanges LearnedFeedForward::changes() const {
 }
 
 void LearnedFeedForward::go_on() {
-    learner_.go_on();
-    for (Learner& physics : physics_) {
-        physics.go_on();
+    for (Learner& learner : learners_) {
+        learner.go_on();
     }
 }
 
@@ -166,67 +162,71 @@ void LearnedFeedForward::Learner::go_on() {
 
 void LearnedFeedForward::Learner::take_over() {
     if (estimator->advance(Budget::predict_only())) { // no work is left
-        // the physics' parameters are the last ones of any model's weights
-        estimator->copy_weights(std::span(weights).last(estimator->weight_count()));
+        estimator->copy_weights(weights);
         in_progress = false;
     }
 }
 
 bool LearnedFeedForward::restore(std::span<const std::byte> snapshot) {
-    const bool restored = learner_.estimator->restore(snapshot);
+    Learner& learner = learners_.front();
+    const bool restored = learner.estimator->restore(snapshot);
     if (restored) {
-        learner_.in_progress = true;
-        learner_.take_over();
+        learner.in_progress = true;
+        learner.take_over();
     }
     return restored;
 }
 
 std::int64_t LearnedFeedForward::tick_cost() const {
-    const Cost cost = learner_.estimator->cost();
-    // the learner's tick, and the follower's with a prediction from the learner's weights
-    std::int64_t total = 2 * (cost.predict + cost.variance) + learner_.share.operations + cost.predict;
-    for (const Learner& physics : physics_) { // its own tick, and another prediction for the reference
-        const Cost of_physics = physics.estimator->cost();
-        total += of_physics.predict + of_physics.variance + physics.share.operations + cost.predict;
+    std::int64_t total = 0;
+    for (const Learner& learner : learners_) {
+        const Cost cost = learner.estimator->cost();
+        // the estimator's tick, and the follower's with a prediction from the learned weights
+        total += 2 * (cost.predict + cost.variance) + learner.share.operations + cost.predict;
     }
     return total;
 }
 
-bool LearnedFeedForward::predict(std::int64_t time_ns, const double* reference, double* torque) {
-    const Tick tick = follower_->tick({time_ns, of_joints(reference), {}, {}, {}});
-    if (!tick.status.estimated()) {
-        ++counters_.reference_unknown;
-        std::fill_n(torque, static_cast<std::size_t>(forecast_count()) * prediction_.size(), unknown);
-        return false;
+void LearnedFeedForward::follow(std::int64_t time_ns, const double* reference) {
+    for (Learner& learner : learners_) {
+        const Tick tick = learner.follower->tick({time_ns, of_joints(reference), {}, {}, {}});
+        learner.follows = tick.status.estimated();
     }
-    return take_forecasts(torque);
+}
+
+bool LearnedFeedForward::predict(std::int64_t time_ns, const double* reference, double* torque) {
+    follow(time_ns, reference);
+    const bool known = take_forecasts(torque);
+    counters_.reference_unknown += known ? 0 : 1;
+    return known;
 }
 
 bool LearnedFeedForward::take_forecasts(double* torque) {
-    bool known = take_prediction(learner_, torque);
-    for (const Learner& physics : physics_) {
+    bool known = false;
+    for (const Learner& learner : learners_) {
+        known = take_prediction(learner, torque) || known;
         torque += prediction_.size();
-        known = take_prediction(physics, torque) || known;
     }
     return known;
 }
 
 std::span<const double> LearnedFeedForward::rest(const JointVector& position) {
     if (rest_lag_ == 0) {
-        follower_->begin_recording();
+        for (Learner& learner : learners_) {
+            learner.follower->begin_recording();
+        }
         rest_position_ = position;
     }
-    const Tick tick =
-        follower_->tick({rest_lag_ * sample_period_ns_, of_joints(rest_position_.data()), {}, {}, {}});
+    follow(rest_lag_ * sample_period_ns_, rest_position_.data());
     rest_lag_ = rest_lag_ < lags_ ? rest_lag_ + 1 : 0;
-    if (rest_lag_ > 0 || !tick.status.estimated() || !take_forecasts(forecasts_at_rest_.data())) {
+    if (rest_lag_ > 0 || !take_forecasts(forecasts_at_rest_.data())) {
         return {};
     }
     return forecasts_at_rest_;
 }
 
 bool LearnedFeedForward::take_prediction(const Learner& learner, double* torque) {
-    const bool known = follower_->predict_with(learner.weights, prediction_) &&
+    const bool known = learner.follows && learner.follower->predict_with(learner.weights, prediction_) &&
                        std::ranges::all_of(prediction_, [](float value) { return std::isfinite(value); });
     std::ranges::transform(prediction_, torque,
                            [=](float value) { return known ? static_cast<double>(value) : unknown; });

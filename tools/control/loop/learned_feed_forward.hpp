@@ -31,14 +31,14 @@ void check_loop_model(const TrainedModel& model, int joints, const std::string& 
 
 /// A learned model of the joint torques as feed-forward. It learns from windows of measured positions and is
 /// evaluated on a window of the reference. Two estimators of the same model are used: one learns, and the
-/// other always has the first one's weights. The command therefore depends on the reference, without the
-/// encoders' noise and delay, and the weights depend on the measured motion.
+/// other, its follower, always has the first one's weights. The command therefore depends on the reference,
+/// without the encoders' noise and delay, and the weights depend on the measured motion.
 ///
-/// For a model with features and learned physics (SPK) two more estimators learn the physics alone, with the
-/// memories `physics_memories_s` and without innovation gate. Their forecasts follow the first one. They have
-/// few parameters: with the short memory they are accurate within a second after a change of the arm, before
-/// the features are, and with the long one wherever the physics is all there is to learn. They start from the
-/// prior, also after `restore`.
+/// For a model with features and learned physics (SPK) two more such pairs learn the physics alone, with the
+/// memories `physics_memories_s` and without innovation gate. Their forecasts come after the first one. They
+/// have few parameters: with the short memory they are accurate within a second after a change of the arm,
+/// before the features are, and with the long one wherever the physics is all there is to learn. They predict
+/// also where the features' arguments are out of range. They start from the prior, also after `restore`.
 ///
 /// The work for one sample is distributed over the control ticks until the next sample, with a bounded share
 /// per tick. This is the host's counterpart of dfdyn::LearnedTorque (a dfdyn::TorqueLearner), for models of
@@ -62,7 +62,7 @@ class LearnedFeedForward {
 
     Extent<dynamic> output_count() const noexcept { return {static_cast<int>(prediction_.size())}; }
     /// Returns 1, and one more per learner of the physics alone.
-    Extent<dynamic> forecast_count() const noexcept { return {1 + static_cast<int>(physics_.size())}; }
+    Extent<dynamic> forecast_count() const noexcept { return {static_cast<int>(learners_.size())}; }
 
     /// Restarts both windows for an arm that has been at rest at `position` (one value per joint, rad) for a
     /// long time; `time_ns`: the present time.
@@ -85,7 +85,7 @@ class LearnedFeedForward {
     std::span<const double> rest(const JointVector& position);
 
     /// Returns the learned state in the firmware's format, to continue after a restart.
-    std::vector<std::byte> snapshot() const { return learner_.estimator->snapshot(); }
+    std::vector<std::byte> snapshot() const { return learners_.front().estimator->snapshot(); }
     /// Restores a snapshot. Returns false, without any change, if it does not match this model.
     bool restore(std::span<const std::byte> snapshot);
 
@@ -99,24 +99,30 @@ class LearnedFeedForward {
         return contacts_ != nullptr && contacts_->detector().contact() ? contacts_->detector().joint() : -1;
     }
     /// Resets the covariance after a change of the arm: see RuntimeEstimator::relearn.
-    void relearn() { learner_.estimator->relearn(); }
+    void relearn() { learners_.front().estimator->relearn(); }
     /// Returns the monitor's findings so far, with times since `begin`.
     RecordedChanges changes() const;
 
   private:
-    /// An estimator that learns in slices, and the weights that it has learned.
+    /// An estimator that learns in slices, and its follower.
     struct Learner {
-        std::unique_ptr<RuntimeEstimator> estimator{};
-        Budget share{};               ///< budget of a control tick
-        std::vector<float> weights{}; ///< of the follower's columns; those not learned here are 0
-        bool in_progress = false;     ///< the estimator has weights that are newer than `weights`
+        std::unique_ptr<RuntimeEstimator> estimator;
+        std::unique_ptr<RuntimeEstimator> follower; ///< of the reference
+        Budget share;                               ///< budget of a control tick
+        std::vector<float> weights;                 ///< learned last
+        bool in_progress = true; ///< the estimator has weights that are newer than `weights`
+        bool follows = false;    ///< the follower can predict the newest reference
 
+        Learner(std::unique_ptr<RuntimeEstimator> learning, std::unique_ptr<RuntimeEstimator> following,
+                int ticks);
         Status learn(const MeasuredSample& sample);
         void go_on();
         void take_over();
     };
 
-    /// Predicts from the follower's columns with these weights; false, and NaN, if they exceed the model's
+    /// Adds a reference to the windows of the followers.
+    void follow(std::int64_t time_ns, const double* reference);
+    /// Predicts for the newest reference; false, and NaN, if that or the prediction exceeds the model's
     /// bounds.
     bool take_prediction(const Learner& learner, double* torque);
     /// Writes each learner's prediction. Returns false if none is valid.
@@ -125,9 +131,7 @@ class LearnedFeedForward {
 
     std::int64_t sample_period_ns_;
     int lags_;
-    Learner learner_;
-    std::vector<Learner> physics_; ///< learn the physics alone, one per memory
-    std::unique_ptr<RuntimeEstimator> follower_;
+    std::vector<Learner> learners_;         ///< of the model, then of the physics alone, one per memory
     MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is monitored
     ContactEstimator* contacts_ = nullptr;  ///< the learner, if contacts are detected
     std::int64_t begin_ns_ = 0;

@@ -218,6 +218,28 @@ TEST_CASE("forecasts of a reference out of range and those beyond the model's bo
     CHECK(restored.counters().reference_unknown == 1);
 }
 
+TEST_CASE("where the arguments of the features are out of range the physics alone is predicted") {
+    DFDYN_SEEDED_ENGINE(engine);
+    TrainedModel model = physics_model(engine);
+    for (double& scale : model.input.scale) {
+        scale *= 1e9;
+    }
+    LearnedFeedForward feed_forward(model, true, 2, 4, "model");
+    constexpr double load = 5;
+    std::array<double, 6> predicted{};
+    feed_forward.begin(0, position(0).data());
+    for (int tick = 1; tick <= 2000; ++tick) {
+        const std::array<double, 2> measured{0, load};
+        learn_sample(feed_forward, tick, measured.data(), 4, physics_period);
+        REQUIRE(feed_forward.predict(tick * physics_period, position(tick).data(), predicted.data()));
+    }
+    CHECK((std::isnan(predicted[0]) && std::isnan(predicted[1])));
+    CHECK(predicted[3] == Approx(load).epsilon(0.2));
+    CHECK(predicted[5] == Approx(load).epsilon(0.2));
+    CHECK(feed_forward.counters().last_fault == dfdyn::Reason::input_out_of_range);
+    CHECK(feed_forward.counters().reference_unknown == 0);
+}
+
 TEST_CASE("a model that does not map these joints' positions to their torques is rejected") {
     DFDYN_SEEDED_ENGINE(engine);
     CHECK(refusal(model_of(engine)) == "none");
