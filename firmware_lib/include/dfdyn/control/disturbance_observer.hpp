@@ -49,8 +49,7 @@ class DisturbanceObserver {
         Torques bandwidth; ///< per joint, rad/s; ≥ 0 and below 1 / period
         Torques limit;     ///< of |estimate|, per joint, N·m; ≥ 0
         Torques step;      ///< usual limit of the change of b J de/dt in a tick, per joint, N·m; > 0
-        Torques
-            swing; ///< of feedback and estimate, from turn to turn of a vibration, N·m; ≥ 0; 0: not watched
+        Torques swing;     ///< between turns of a vibration, per joint, N·m; ≥ 0; 0: not watched
     };
 
     /// Starts without an estimate. `joint_count`: n.
