@@ -45,8 +45,6 @@ class LatenessWatch {
     std::thread thread_;
 };
 
-/// Half of the time without positions after which a loop of 100 Hz stops.
-constexpr milliseconds shortest_stall{30};
 constexpr int most_stalls = 12; // half a minute of attempts
 
 /// An attempt that throws is wrong: programs do not start in time on a machine that stalls.
@@ -61,7 +59,7 @@ bool succeeds(const std::function<bool()>& attempt) {
 
 } // namespace
 
-bool right_unless_stalled(const std::function<bool()>& attempt) {
+bool right_unless_stalled(const std::function<bool()>& attempt, milliseconds shortest_stall) {
     static int stalls = 0;
     while (true) {
         const LatenessWatch watch;
