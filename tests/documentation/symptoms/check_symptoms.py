@@ -112,12 +112,22 @@ def whole_recording(trial):
                 trial.run("train", *trial.quickly(), "--log", "reversed.csv", "-o", "other.json"))
     diagnosis = trial.run("diagnose", *UR5, "--log", NO6, "--outputs", "i", "--quiet", "-o", "diagnosis")
     trial.shows("the causes found err more than plain least squares per joint", diagnosis)
-    few_motions = DATA / "ur5_kufieta" / "Movement_No2.csv"
-    trial.shows("this motion hardly distinguishes it from:",
-                trial.run("diagnose", *UR5, "--log", few_motions, "--outputs", "i", "--quiet", "-o", "few_motions"))
     trial.shows("expected a new or empty folder, found files in it", trial.run("start", "--log", NO6, "--outputs", "i", "-o", "diagnosis"))
     jittering = DATA / "ur5_kufieta" / "Movement_No3_Acc.csv"
     trial.shows("the time steps are not constant:", trial.run("start", "--log", jittering, "--outputs", "i", "--quick", "-o", "look"))
+
+
+def small_motion(trial):
+    """A payload and an error of the last link do nearly the same while the arm moves little."""
+    arm = ["--robot", DATA / "robots" / "small_arm" / "small_arm.urdf"]
+    scenario = json.loads((DATA / "scenarios" / "small_arm.json").read_text())
+    scenario["recording"].update(samples=3000, columns=["q", "tau"])
+    scenario["task"]["amplitude_rad"] = [0.33, 0.39]
+    scenario["payloads"] = [{"mass_kg": 0.5, "centre_m": [0, 0, 0.1]}]
+    (trial.folder / "small_motion.json").write_text(json.dumps(scenario))
+    trial.run("simulate", *arm, "--scenario", "small_motion.json", "-o", "small_motion.csv", "--quiet")
+    trial.shows("this motion hardly distinguishes it from:",
+                trial.run("diagnose", *arm, "--tip", "tool", "--log", "small_motion.csv", "--outputs", "tau", "--quiet", "-o", "few_motions"))
 
 
 def buses_and_loops(trial):
@@ -155,7 +165,7 @@ def main():
     if sys.argv[2:] == ["--long"]:
         with tempfile.TemporaryDirectory() as scratch:
             trial = Trial(str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(scratch))
-            for part in (recordings, whole_recording, buses_and_loops, compiler):
+            for part in (recordings, whole_recording, small_motion, buses_and_loops, compiler):
                 part(trial)
         missing += [one for one in COMPOSED if one not in trial.shown]
         strangers = [one for one in trial.shown if one not in names and not any(one in text or text in one for text in quoted)]
