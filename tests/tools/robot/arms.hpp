@@ -21,6 +21,12 @@ inline tools::Robot ur5() {
     return tools::read_robot(DFDYN_TEST_DATA_DIR "/robots/ur5/ur5_robot.urdf", options);
 }
 
+inline tools::Robot small_arm() {
+    tools::ReadRobotOptions options;
+    options.tip = "tool";
+    return tools::read_robot(DFDYN_TEST_DATA_DIR "/robots/small_arm/small_arm.urdf", options);
+}
+
 /// Two links of length 1 m that turn about z, with the given gravity along -y.
 inline tools::Robot planar_arm(double gravity) {
     tools::Robot robot;

@@ -79,6 +79,9 @@ struct Candidate {
     /// Returns the catalogue's parameters, the main one first, from the coefficients of a shape.
     std::function<std::vector<EffectParameter>(const Eigen::VectorXd& coefficients, const EffectShape& shape)>
         parameters;
+    /// It is relinearized even while it is not chosen, about the estimate of its last shape. Otherwise a sum
+    /// of other effects may come nearer to it than its own columns about zero.
+    bool relinearized_unchosen = false;
 
     bool named() const { return inputs.empty(); }
     std::string key() const { return effect + '@' + where + ' ' + detail; }

@@ -18,8 +18,11 @@ inline constexpr double farthest_payload = 0.5; ///< m, of a payload's centre of
 InertialParameters point_mass(double mass, const Eigen::Vector3d& centre);
 
 /// Returns the columns of body `body` for a point mass at `centre` (per kg), then for its first moments about
-/// it (per kg·m). Both are expressed in a frame at `placement` of the body.
+/// it (per kg·m). Both are expressed in a frame at `placement` of the body. The moment of inertia is
+/// quadratic in the first moments; the columns are exact at 0 and where the mass is displaced by
+/// `displacement` (m).
 std::vector<EffectColumn> mass_columns(const DiagnosisSignals& signals, Eigen::Index body,
-                                       const Eigen::Vector3d& centre, const Eigen::Isometry3d& placement);
+                                       const Eigen::Vector3d& centre, const Eigen::Isometry3d& placement,
+                                       const Eigen::Vector3d& displacement = Eigen::Vector3d::Zero());
 
 } // namespace dfdyn::tools

@@ -54,26 +54,46 @@ bool within_reach(const Eigen::VectorXd& coefficients) {
            coefficients.tail(coefficients.size() - 1).norm() <= farthest_payload * coefficients[0];
 }
 
+/// Returns the position of the centre of mass (m, in the tip's frame): the tip if it was not fitted.
+Eigen::Vector3d centre_of(const Eigen::VectorXd& coefficients) {
+    return coefficients.size() == 4 ? Eigen::Vector3d(coefficients.tail<3>() / coefficients[0])
+                                    : Eigen::Vector3d::Zero();
+}
+
 std::vector<EffectParameter> payload_parameters(const Eigen::VectorXd& coefficients, const EffectShape&) {
     std::vector values{payload_mass.at(coefficients[0])};
+    const Eigen::Vector3d centre = centre_of(coefficients);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const bool fitted = coefficients.size() == 4;
-        values.push_back(payload_centre[static_cast<std::size_t>(axis)].at(
-            fitted ? coefficients[axis + 1] / coefficients[0] : 0.0));
+        values.push_back(payload_centre[static_cast<std::size_t>(axis)].at(centre[axis]));
     }
     return values;
 }
 
+/// Returns the columns of a payload whose moment of inertia is exact with its centre of mass at `centre`.
+std::vector<EffectColumn> payload_columns_about(const DiagnosisSignals& signals,
+                                                const Eigen::Vector3d& centre) {
+    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
+    return mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement, centre);
+}
+
 /// A payload for the whole recording: at the tip, or with its centre of mass anywhere.
-std::vector<Candidate> payload_candidates(const DiagnosisSignals& signals, std::size_t /*number*/) {
+Candidate payload_about(const DiagnosisSignals& signals, const Eigen::Vector3d& centre) {
     Candidate result;
     result.where = "tool";
     result.span = last_body;
     result.family = one_payload;
-    result.columns = payload_columns(signals);
+    result.columns = payload_columns_about(signals, centre);
     result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0, 3, at_farthest}};
+    result.about = [&signals](const EffectShape&, const Eigen::VectorXd& coefficients) {
+        return payload_about(signals, centre_of(coefficients));
+    };
+    result.relinearized_unchosen = true;
     result.parameters = payload_parameters;
-    return {std::move(result)};
+    return result;
+}
+
+std::vector<Candidate> payload_candidates(const DiagnosisSignals& signals, std::size_t /*number*/) {
+    return {payload_about(signals, Eigen::Vector3d::Zero())};
 }
 
 /// Products of the payload's columns, with the weight of the columns while `there` (T, 0 or 1) is 1: their
@@ -119,19 +139,15 @@ class PayloadScan : public EffectScan {
 };
 
 EffectDisposition extend_by_payload(ModelExtension& extension, const ChosenEffect& chosen) {
-    const double mass = chosen.coefficients[0];
-    const Eigen::Vector3d centre = chosen.coefficients.size() == 4
-                                       ? Eigen::Vector3d(chosen.coefficients.tail<3>() / mass)
-                                       : Eigen::Vector3d::Zero();
-    extension.bodies.tail<10>() += moved(point_mass(mass, centre), extension.robot.tip_placement);
+    const InertialParameters payload = point_mass(chosen.coefficients[0], centre_of(chosen.coefficients));
+    extension.bodies.tail<10>() += moved(payload, extension.robot.tip_placement);
     return EffectDisposition::adapting;
 }
 
 } // namespace
 
 std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals) {
-    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
-    return mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement);
+    return payload_columns_about(signals, Eigen::Vector3d::Zero());
 }
 
 Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<EffectColumn>& lasting,

@@ -62,6 +62,27 @@ Candidate relinearized(const Candidate& chosen, const EffectShape& shape,
     return result;
 }
 
+std::vector<Candidate> relinearized_unchosen(const FittedEffects& effects) {
+    std::vector<Candidate> result;
+    for (std::size_t i = 0; i < effects.candidates.size(); ++i) {
+        const Candidate& candidate = effects.candidates[i];
+        if (!candidate.relinearized_unchosen) {
+            continue;
+        }
+        const std::size_t whole = candidate.shapes.size() - 1;
+        std::vector<ChosenShape> with = effects.chosen;
+        std::erase_if(with, [i](const ChosenShape& one) { return one.candidate == i; });
+        with.push_back({i, whole});
+        const EffectShape& shape = candidate.shapes[whole];
+        const Eigen::VectorXd coefficients =
+            fit_effects(effects.problem, with).coefficients.tail(std::ssize(shape.columns));
+        if (shape.allowed(coefficients)) {
+            result.push_back(relinearized(candidate, shape, coefficients));
+        }
+    }
+    return result;
+}
+
 std::vector<KeptChoice> kept_choices(const FittedEffects& effects) {
     std::vector<KeptChoice> kept;
     for (const ChosenShape& one : effects.chosen) {

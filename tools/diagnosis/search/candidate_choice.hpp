@@ -41,6 +41,10 @@ void set_classes(FittedEffects& effects);
 Candidate relinearized(const Candidate& chosen, const EffectShape& shape,
                        const Eigen::VectorXd& coefficients);
 
+/// Returns the candidates that are relinearized even if they are not chosen. Each is relinearized about the
+/// estimate of its last shape in the chosen model.
+std::vector<Candidate> relinearized_unchosen(const FittedEffects& effects);
+
 /// Returns the chosen candidates.
 std::vector<KeptChoice> kept_choices(const FittedEffects& effects);
 

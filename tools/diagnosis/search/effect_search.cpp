@@ -149,6 +149,22 @@ void keep_best_addition(Step& best, const SearchProblem& problem, const std::vec
     }
 }
 
+/// Replaces `best` by the best model in which an effect that may be half of another one is removed from
+/// `chosen` and a second effect exchanged.
+void keep_best_of_one_for_two(Step& best, const SearchProblem& problem,
+                              const std::vector<ChosenShape>& chosen) {
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        if (!problem.candidates[chosen[i].candidate].may_be_half) {
+            continue;
+        }
+        const std::vector<ChosenShape> fewer = without(chosen, i);
+        const Neighbours near(problem, fewer);
+        for (std::size_t k = 0; k < fewer.size(); ++k) {
+            keep_best_addition(best, problem, without(fewer, k), near.exchanges(k));
+        }
+    }
+}
+
 } // namespace
 
 std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index) {
@@ -311,6 +327,9 @@ std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vecto
                 }
                 keep_best_addition(best, problem, fewer, near.exchanges(i));
             }
+        }
+        if (!(best.score > at.score + least_gain)) {
+            keep_best_of_one_for_two(best, problem, at.chosen);
         }
         if (!(best.score > at.score + least_gain)) {
             break;

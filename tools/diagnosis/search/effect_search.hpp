@@ -22,6 +22,7 @@ struct SearchCandidate {
     double candidates_of_class = 1; ///< number of candidates of its class
     double tried = 1;               ///< number of alternatives from which it was selected beforehand
     double evidence_offset = 0;     ///< additional penalty
+    bool may_be_half = false;       ///< together with a second effect, it can resemble a third one
 };
 
 /// A candidate and one of its shapes.

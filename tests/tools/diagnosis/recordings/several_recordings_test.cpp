@@ -5,12 +5,11 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/diagnosis/recordings/simulated_recording.hpp"
 #include "tests/tools/robot/arms.hpp"
-#include "tools/base/recording/columns_matrix.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/robot/firmware_chain.hpp"
-#include "tools/simulation/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,25 +33,6 @@ Scenario scenario_of(const Robot& robot, std::size_t number) {
     return scenario;
 }
 
-Recording recording_of(const Robot& robot, const Scenario& scenario, const std::string& name) {
-    Simulation simulation(robot, scenario);
-    Recording recording;
-    recording.source = name;
-    recording.position.names = joint_names("q", 6);
-    recording.output.names = output_names(OutputKind::joint_torque, 6);
-    for (std::size_t row = 0; row < scenario.recording.samples; ++row) {
-        const SimulatedSample sample = simulation.next();
-        recording.time_s.push_back(sample.time_s);
-        recording.time_ns.push_back(std::llround(sample.time_s * 1e9));
-        recording.gap_before.push_back(row == 0 ? 1 : 0);
-        for (Index joint = 0; joint < 6; ++joint) {
-            recording.position.values.push_back(sample.position[joint]);
-            recording.output.values.push_back(sample.torque[joint]);
-        }
-    }
-    return recording;
-}
-
 /// Three motions. `wrong_link`: the forearm is 1 kg heavier, with its centre displaced by 15 cm and 5 cm.
 std::vector<Recording> motions(const Robot& robot, bool with_load, bool wrong_link) {
     std::vector<Recording> recordings;
@@ -64,7 +44,8 @@ std::vector<Recording> motions(const Robot& robot, bool with_load, bool wrong_li
         if (wrong_link) {
             scenario.robot_errors.links = {{2, 1, {0.15, 0, 0.05}}};
         }
-        recordings.push_back(recording_of(robot, scenario, "motion" + std::to_string(number) + ".csv"));
+        recordings.push_back(
+            simulated_recording(robot, scenario, "motion" + std::to_string(number) + ".csv"));
     }
     return recordings;
 }
@@ -141,7 +122,8 @@ TEST_CASE("a load in all recordings is one common load") {
     for (std::size_t number = 0; number < 3; ++number) {
         Scenario scenario = scenario_of(robot, number);
         scenario.payloads = {load};
-        recordings.push_back(recording_of(robot, scenario, "motion" + std::to_string(number) + ".csv"));
+        recordings.push_back(
+            simulated_recording(robot, scenario, "motion" + std::to_string(number) + ".csv"));
     }
     for (const bool loads_differ : {false, true}) {
         const SeveralRecordings several = answer_of(robot, recordings, loads_differ);
@@ -156,7 +138,7 @@ TEST_CASE("a load in all recordings is one common load") {
 
 TEST_CASE("a single recording and wrenches have no common fit") {
     const Robot robot = ur5();
-    const Recording one = recording_of(robot, scenario_of(robot, 0), "one.csv");
+    const Recording one = simulated_recording(robot, scenario_of(robot, 0), "one.csv");
     CHECK_FALSE(answer_of(robot, {one}, false).answered());
     DiagnosisOptions wrench;
     wrench.outputs = OutputKind::wrench;
@@ -178,7 +160,7 @@ TEST_CASE("the same recording twice gives no difference, and a changed friction 
     constexpr double expected_spread = 0.05; // prior spread of dry friction
     constexpr double more = 0.3;
     const Robot robot = ur5();
-    const Recording one = recording_of(robot, scenario_of(robot, 0), "one.csv");
+    const Recording one = simulated_recording(robot, scenario_of(robot, 0), "one.csv");
     const PooledFit twice = answer_of(robot, {one, one}, false).answer.fit;
     const PooledFit apart = answer_of(robot, {one, with_more_dry_friction(one, more)}, false).answer.fit;
     for (Index joint = 0; joint < 6; ++joint) {
