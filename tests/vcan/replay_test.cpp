@@ -56,7 +56,7 @@ TEST_CASE("predictions on a live bus are bit-identical to those from its recordi
     const int rows = 2 * rate_hz;
     const IcubLog log(rows, rate_hz);
     const std::uint64_t frames = 4 * static_cast<std::uint64_t>(rows) + 6; // with the sensor's full scales
-    // A tick without positions, after which the encoder has to qualify again.
+    // Positions half a period late leave a tick without any. The encoder then has to qualify again.
     const std::chrono::milliseconds loses_a_tick{1500 / rate_hz};
     constexpr int before_learning = 9 + 4; // readings until an encoder qualifies, plus the lags
     LiveAndReplayed both;

@@ -127,7 +127,7 @@ def small_motion(trial):
     (trial.folder / "small_motion.json").write_text(json.dumps(scenario))
     trial.run("simulate", *arm, "--scenario", "small_motion.json", "-o", "small_motion.csv", "--quiet")
     trial.shows("this motion hardly distinguishes it from:",
-                trial.run("diagnose", *arm, "--tip", "tool", "--log", "small_motion.csv", "--outputs", "tau", "--quiet", "-o", "few_motions"))
+                trial.run("diagnose", *arm, "--tip", "tool", "--log", "small_motion.csv", "--outputs", "tau", "--quiet", "-o", "small_motion"))
 
 
 def buses_and_loops(trial):
