@@ -73,15 +73,15 @@ struct Candidate {
     /// parameter, or only the listed values are possible.
     std::function<EffectColumn(const EffectShape& shape, double value)> at_value;
     /// Returns the candidate relinearized about its estimate. Its first shape with the same number of columns
-    /// is the current one: with nearer times, or with the exact effect of a large angle. Empty:
-    /// relinearization would change nothing.
+    /// is the current one: with nearer times, or with the exact effect of a large angle or a displaced mass.
+    /// Empty: relinearization would change nothing.
     std::function<Candidate(const EffectShape& shape, const Eigen::VectorXd& coefficients)> about;
     /// Returns the catalogue's parameters, the main one first, from the coefficients of a shape.
     std::function<std::vector<EffectParameter>(const Eigen::VectorXd& coefficients, const EffectShape& shape)>
         parameters;
-    /// It is relinearized even while it is not chosen, about the estimate of its last shape. Otherwise a sum
-    /// of other effects may come nearer to it than its own columns about zero.
-    bool relinearized_unchosen = false;
+    /// It has a family and is relinearized even while it is not chosen, about the estimate of its last shape.
+    /// Otherwise a sum of other effects may come nearer to its true effect than its own columns about zero.
+    bool always_relinearized = false;
 
     bool named() const { return inputs.empty(); }
     std::string key() const { return effect + '@' + where + ' ' + detail; }

@@ -25,11 +25,11 @@ InertialParameters point_mass(double mass, const Eigen::Vector3d& centre) {
 std::vector<EffectColumn> mass_columns(const DiagnosisSignals& signals, Eigen::Index body,
                                        const Eigen::Vector3d& centre, const Eigen::Isometry3d& placement,
                                        const Eigen::Vector3d& displacement) {
-    const Eigen::Vector3d between = centre + displacement / 2; // the slope here is that of the secant
+    const Eigen::Vector3d midpoint = centre + displacement / 2; // the slope here is that of the secant
     std::vector<EffectColumn> columns{
         on_outputs(signals.of_body(body, moved(point_mass(1, centre), placement)))};
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        columns.push_back(on_outputs(signals.of_body(body, moved(first_moment(between, axis), placement))));
+        columns.push_back(on_outputs(signals.of_body(body, moved(first_moment(midpoint, axis), placement))));
     }
     return columns;
 }

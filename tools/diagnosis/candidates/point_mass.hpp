@@ -19,8 +19,8 @@ InertialParameters point_mass(double mass, const Eigen::Vector3d& centre);
 
 /// Returns the columns of body `body` for a point mass at `centre` (per kg), then for its first moments about
 /// it (per kg·m). Both are expressed in a frame at `placement` of the body. The moment of inertia is
-/// quadratic in the first moments; the columns are exact at 0 and where the mass is displaced by
-/// `displacement` (m).
+/// quadratic in the displacement. It is exact without one and at `displacement` (m); its slope there is half
+/// of the true one, so that repeated relinearization converges linearly.
 std::vector<EffectColumn> mass_columns(const DiagnosisSignals& signals, Eigen::Index body,
                                        const Eigen::Vector3d& centre, const Eigen::Isometry3d& placement,
                                        const Eigen::Vector3d& displacement = Eigen::Vector3d::Zero());

@@ -76,7 +76,8 @@ std::vector<EffectColumn> payload_columns_about(const DiagnosisSignals& signals,
     return mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement, centre);
 }
 
-/// A payload for the whole recording: at the tip, or with its centre of mass anywhere.
+/// A payload for the whole recording: at the tip, or with its centre of mass anywhere. Its moment of inertia
+/// is exact at the tip and at `centre`.
 Candidate payload_about(const DiagnosisSignals& signals, const Eigen::Vector3d& centre) {
     Candidate result;
     result.where = "tool";
@@ -87,7 +88,7 @@ Candidate payload_about(const DiagnosisSignals& signals, const Eigen::Vector3d& 
     result.about = [&signals](const EffectShape&, const Eigen::VectorXd& coefficients) {
         return payload_about(signals, centre_of(coefficients));
     };
-    result.relinearized_unchosen = true;
+    result.always_relinearized = true;
     result.parameters = payload_parameters;
     return result;
 }
@@ -125,12 +126,14 @@ class PayloadScan : public EffectScan {
     std::vector<Candidate> candidates(const FittedResidual& residual) const override {
         return scan_taken_payload(residual.signals, residual.regression, residual.weighted, payload_);
     }
-    /// Every candidate, chosen or not, must exceed the other windows in the current residual.
+    /// Every payload that is picked up, chosen or not, must exceed the other windows in the current residual.
     void set_prices(const std::vector<Candidate*>& own, const FittedResidual& residual) const override {
         for (Candidate* const candidate : own) {
-            candidate->evidence_offset =
-                payload_evidence_threshold(residual.signals, residual.regression, residual.weighted, payload_,
-                                           candidate->shapes.front().value);
+            if (candidate->event) {
+                candidate->evidence_offset =
+                    payload_evidence_threshold(residual.signals, residual.regression, residual.weighted,
+                                               payload_, candidate->shapes.front().value);
+            }
         }
     }
 

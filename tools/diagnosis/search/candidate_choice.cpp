@@ -51,27 +51,29 @@ void set_classes(FittedEffects& effects) {
     }
 }
 
-Candidate relinearized(const Candidate& chosen, const EffectShape& shape,
+Candidate relinearized(const Candidate& candidate, const EffectShape& shape,
                        const Eigen::VectorXd& coefficients) {
-    Candidate result = chosen.about(shape, coefficients);
-    result.effect = chosen.effect;
-    result.family = chosen.family;
-    result.evidence_offset = chosen.evidence_offset;
-    result.tried =
-        chosen.tried * static_cast<double>(chosen.shapes.size()) / static_cast<double>(result.shapes.size());
+    Candidate result = candidate.about(shape, coefficients);
+    result.effect = candidate.effect;
+    result.family = candidate.family;
+    result.evidence_offset = candidate.evidence_offset;
+    result.tried = candidate.tried * static_cast<double>(candidate.shapes.size()) /
+                   static_cast<double>(result.shapes.size());
     return result;
 }
 
-std::vector<Candidate> relinearized_unchosen(const FittedEffects& effects) {
+std::vector<Candidate> relinearized_always(const FittedEffects& effects) {
     std::vector<Candidate> result;
     for (std::size_t i = 0; i < effects.candidates.size(); ++i) {
         const Candidate& candidate = effects.candidates[i];
-        if (!candidate.relinearized_unchosen) {
+        if (!candidate.always_relinearized) {
             continue;
         }
         const std::size_t whole = candidate.shapes.size() - 1;
         std::vector<ChosenShape> with = effects.chosen;
-        std::erase_if(with, [i](const ChosenShape& one) { return one.candidate == i; });
+        std::erase_if(with, [&](const ChosenShape& one) {
+            return effects.candidates[one.candidate].family == candidate.family;
+        });
         with.push_back({i, whole});
         const EffectShape& shape = candidate.shapes[whole];
         const Eigen::VectorXd coefficients =

@@ -36,14 +36,14 @@ bool is_coulomb(const Candidate& candidate);
 /// the others.
 void set_classes(FittedEffects& effects);
 
-/// Returns a chosen candidate, relinearized about its estimate. The number of its new shapes does not change
-/// its prior.
-Candidate relinearized(const Candidate& chosen, const EffectShape& shape,
+/// Returns a candidate, relinearized about its estimate. The number of its new shapes does not change its
+/// prior.
+Candidate relinearized(const Candidate& candidate, const EffectShape& shape,
                        const Eigen::VectorXd& coefficients);
 
-/// Returns the candidates that are relinearized even if they are not chosen. Each is relinearized about the
-/// estimate of its last shape in the chosen model.
-std::vector<Candidate> relinearized_unchosen(const FittedEffects& effects);
+/// Returns the candidates with `always_relinearized`, each about the estimate of its last shape in the chosen
+/// model, in place of all of its family. Those whose estimates are inadmissible are left out.
+std::vector<Candidate> relinearized_always(const FittedEffects& effects);
 
 /// Returns the chosen candidates.
 std::vector<KeptChoice> kept_choices(const FittedEffects& effects);

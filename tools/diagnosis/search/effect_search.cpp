@@ -328,10 +328,11 @@ std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vecto
                 keep_best_addition(best, problem, fewer, near.exchanges(i));
             }
         }
-        if (!(best.score > at.score + least_gain)) {
+        const auto improved = [&] { return best.score > at.score + least_gain; };
+        if (!improved()) {
             keep_best_of_one_for_two(best, problem, at.chosen);
         }
-        if (!(best.score > at.score + least_gain)) {
+        if (!improved()) {
             break;
         }
         at = best;

@@ -22,7 +22,7 @@ struct SearchCandidate {
     double candidates_of_class = 1; ///< number of candidates of its class
     double tried = 1;               ///< number of alternatives from which it was selected beforehand
     double evidence_offset = 0;     ///< additional penalty
-    bool may_be_half = false;       ///< together with a second effect, it can resemble a third one
+    bool may_be_half = false;       ///< with a second effect it can resemble a third one
 };
 
 /// A candidate and one of its shapes.
@@ -123,8 +123,9 @@ class Neighbours {
     double score_ = 0;
 };
 
-/// Stepwise search: adds, removes and exchanges effects, always with the best step, until the evidence no
-/// longer increases.
+/// Stepwise search: adds effects; where no addition helps, it removes or exchanges one; where that does not
+/// help either, it removes one that may be half of another and exchanges a second one. It takes the best step
+/// of its kind, until the evidence no longer increases.
 std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vector<ChosenShape> start);
 
 } // namespace dfdyn::tools

@@ -175,10 +175,10 @@ void Search::add_scanned(std::vector<Candidate>& found, const Effect& effect, co
 std::vector<CandidateEntry> Search::model_dependent() const {
     std::vector<Candidate> found;
     add(found, fitted_candidates(signals_, fitted_model(), options_.effects));
-    add(found, relinearized_unchosen(result_));
+    add(found, relinearized_always(result_));
     for (std::size_t i = 0; i < result_.chosen.size(); ++i) {
         const Candidate& chosen = result_.candidates[result_.chosen[i].candidate];
-        if (chosen.about && !chosen.relinearized_unchosen) {
+        if (chosen.about && !chosen.always_relinearized) {
             const Eigen::Index first = result_.first_column(i);
             add(found,
                 {relinearized(chosen, chosen.shapes[result_.chosen[i].shape],
@@ -223,7 +223,7 @@ void Search::set_candidates(const std::vector<CandidateEntry>& entries) {
         candidate.family = families.emplace(entry.candidate.family, families.size()).first->second;
         candidate.tried = entry.candidate.tried;
         candidate.evidence_offset = entry.candidate.evidence_offset;
-        candidate.may_be_half = yields(entry.candidate) || entry.candidate.relinearized_unchosen;
+        candidate.may_be_half = yields(entry.candidate) || entry.candidate.always_relinearized;
         for (const EffectShape& shape : entry.candidate.shapes) {
             SearchCandidate::Shape one{{}, shape.allowed, shape.bounded, shape.nearest};
             for (const std::size_t column : shape.columns) {

@@ -37,6 +37,27 @@ double draw(std::mt19937_64& engine, double low, double high) {
 
 } // namespace
 
+TEST_CASE("a relinearized payload is exact at its centre of mass and at the tip") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Robot robot = ur5();
+    robot.tip_placement.rotate(
+        Eigen::AngleAxisd(draw(engine, 0.3, 2), Eigen::Vector3d(1, 2, 2).normalized()));
+    const DiagnosisSignals signals = signals_of(robot, OutputKind::joint_torque);
+    const double mass = draw(engine, 0.5, 3);
+    const Eigen::Vector3d centre(draw(engine, 0.05, 0.2), draw(engine, -0.2, 0.2), draw(engine, -0.2, 0.2));
+    const VectorXd moments{{mass, mass * centre.x(), mass * centre.y(), mass * centre.z()}};
+    const Candidate payload = find(lasting_candidates(signals), "payload", "tool");
+    const Candidate exact = payload.about(payload.shapes.back(), moments);
+    const auto outputs_with = [&](const Eigen::Vector3d& at) -> MatrixXd {
+        Robot loaded = robot;
+        loaded.joints.back().inertia +=
+            moved(body_parameters(mass, at, Eigen::Matrix3d::Zero()), robot.tip_placement);
+        return rigid_outputs(loaded, signals.kind, signals.measured.motion) - signals.nominal;
+    };
+    check_same(added(signals, exact, 1, moments), outputs_with(centre), 1e-9);
+    check_same(added(signals, exact, 0, moments.head(1)), outputs_with(Eigen::Vector3d::Zero()), 1e-9);
+}
+
 TEST_CASE("a relinearized tilt or encoder error is exact at a large angle") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);

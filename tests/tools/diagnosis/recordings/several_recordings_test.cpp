@@ -7,6 +7,7 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/recordings/simulated_recording.hpp"
 #include "tests/tools/robot/arms.hpp"
+#include "tools/base/recording/columns_matrix.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/robot/firmware_chain.hpp"

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/base/recording/columns_matrix.hpp"
 #include "tools/base/recording/recording.hpp"
-#include "tools/robot/firmware_chain.hpp"
 #include "tools/simulation/simulation.hpp"
 
 #include <cmath>

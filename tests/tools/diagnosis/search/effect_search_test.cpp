@@ -107,6 +107,23 @@ TEST_CASE("a column that resembles the sum of two others is replaced by them") {
     CHECK(found(problem_of(columns, target)) == std::vector<std::size_t>{0, 1});
 }
 
+TEST_CASE(
+    "two chosen effects are replaced by one that does the same, if one of them may be half of another") {
+    DFDYN_SEEDED_ENGINE(engine);
+    MatrixXd columns = random_columns(5, engine);
+    columns.col(4) = columns.rightCols(4).leftCols(3).rowwise().sum();
+    const VectorXd target = columns.col(0) + columns.col(4) + random_columns(1, engine);
+    SearchProblem problem = problem_of(columns, target);
+    problem.candidates[0].shapes.push_back({{0, 1, 2, 3}, anything});
+    problem.candidates[1] = problem.candidates[4];
+    problem.candidates[1].evidence_offset = 20; // the whole effect is more probable
+    problem.candidates.resize(2);
+    const std::vector<ChosenShape> halves{{0, 0}, {1, 0}};
+    CHECK(search_effects(problem, halves) == halves);
+    problem.candidates[1].may_be_half = true;
+    CHECK(search_effects(problem, halves) == std::vector<ChosenShape>{{0, 1}});
+}
+
 TEST_CASE("the search chooses at most one effect of a family and only allowed coefficients") {
     DFDYN_SEEDED_ENGINE(engine);
     const MatrixXd columns = random_columns(4, engine);
