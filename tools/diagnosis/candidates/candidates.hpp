@@ -22,7 +22,9 @@ Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t number,
                            const std::vector<int>& cycles);
 
 /// Returns the change of the outputs per unit of a payload's mass at the tip, and of its three first moments.
-std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals);
+/// Its moment of inertia is exact at the tip and with its centre of mass at `centre` (m, in the tip's frame).
+std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals,
+                                          const Eigen::Vector3d& centre = Eigen::Vector3d::Zero());
 
 /// Returns a payload (`lasting`: its columns) that is picked up at one of these times, with two shapes for
 /// each: at the tip, and with its centre of mass anywhere.

@@ -69,13 +69,6 @@ std::vector<EffectParameter> payload_parameters(const Eigen::VectorXd& coefficie
     return values;
 }
 
-/// Returns the columns of a payload whose moment of inertia is exact with its centre of mass at `centre`.
-std::vector<EffectColumn> payload_columns_about(const DiagnosisSignals& signals,
-                                                const Eigen::Vector3d& centre) {
-    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
-    return mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement, centre);
-}
-
 /// A payload for the whole recording: at the tip, or with its centre of mass anywhere. Its moment of inertia
 /// is exact at the tip and at `centre`.
 Candidate payload_about(const DiagnosisSignals& signals, const Eigen::Vector3d& centre) {
@@ -83,7 +76,7 @@ Candidate payload_about(const DiagnosisSignals& signals, const Eigen::Vector3d& 
     result.where = "tool";
     result.span = last_body;
     result.family = one_payload;
-    result.columns = payload_columns_about(signals, centre);
+    result.columns = payload_columns(signals, centre);
     result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0, 3, at_farthest}};
     result.about = [&signals](const EffectShape&, const Eigen::VectorXd& coefficients) {
         return payload_about(signals, centre_of(coefficients));
@@ -149,8 +142,9 @@ EffectDisposition extend_by_payload(ModelExtension& extension, const ChosenEffec
 
 } // namespace
 
-std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals) {
-    return payload_columns_about(signals, Eigen::Vector3d::Zero());
+std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals, const Eigen::Vector3d& centre) {
+    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
+    return mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement, centre);
 }
 
 Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<EffectColumn>& lasting,

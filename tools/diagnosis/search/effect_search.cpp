@@ -149,10 +149,10 @@ void keep_best_addition(Step& best, const SearchProblem& problem, const std::vec
     }
 }
 
-/// Replaces `best` by the best model in which an effect that may be half of another one is removed from
-/// `chosen` and a second effect exchanged.
-void keep_best_of_one_for_two(Step& best, const SearchProblem& problem,
-                              const std::vector<ChosenShape>& chosen) {
+/// Replaces `best` by the best model with one effect in place of two of the `chosen`: one that may be half of
+/// it is removed, the other exchanged.
+void keep_best_in_place_of_two(Step& best, const SearchProblem& problem,
+                               const std::vector<ChosenShape>& chosen) {
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         if (!problem.candidates[chosen[i].candidate].may_be_half) {
             continue;
@@ -330,7 +330,7 @@ std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vecto
         }
         const auto improved = [&] { return best.score > at.score + least_gain; };
         if (!improved()) {
-            keep_best_of_one_for_two(best, problem, at.chosen);
+            keep_best_in_place_of_two(best, problem, at.chosen);
         }
         if (!improved()) {
             break;
