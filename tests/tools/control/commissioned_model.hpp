@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tests/tools/support/append_row.hpp"
 #include "tools/control/closed_loop.hpp"
 #include "tools/model/structure.hpp"
 #include "tools/replay/contradiction.hpp"
@@ -27,13 +28,7 @@ inline tools::Recording commissioning(const tools::Robot& robot, tools::Scenario
         if (tick++ % row_ticks != 0) {
             return;
         }
-        recording.gap_before.push_back(recording.time_s.empty());
-        recording.time_s.push_back(instant.time_s);
-        recording.time_ns.push_back(std::llround(instant.time_s * 1e9));
-        const tools::JointVector& position = *instant.measured.position;
-        const tools::JointVector& torque = *instant.measured.torque;
-        recording.position.values.insert(recording.position.values.end(), position.begin(), position.end());
-        recording.output.values.insert(recording.output.values.end(), torque.begin(), torque.end());
+        append_row(recording, instant.time_s, *instant.measured.position, *instant.measured.torque);
     });
     return recording;
 }

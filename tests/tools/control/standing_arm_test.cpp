@@ -3,6 +3,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
+#include "tests/tools/support/append_row.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/control/closed_loop.hpp"
 #include "tools/model/structure.hpp"
@@ -107,14 +108,7 @@ Recording commissioning(LoopArm arm) {
         if (instant.time_s < row - 1e-6) {
             return;
         }
-        recording.time_s.push_back(row);
-        recording.time_ns.push_back(std::llround(1e9 * row));
-        recording.gap_before.push_back(recording.row_count() == 1 ? 1 : 0);
-        const auto append = [](std::vector<double>& values, const JointVector& row_values) {
-            values.insert(values.end(), row_values.begin(), row_values.end());
-        };
-        append(recording.position.values, *instant.measured.position);
-        append(recording.output.values, *instant.measured.torque);
+        append_row(recording, row, *instant.measured.position, *instant.measured.torque);
     });
     return recording;
 }

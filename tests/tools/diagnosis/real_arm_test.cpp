@@ -6,6 +6,7 @@
 // - the additional mass of its wrist according to the robot's own controller;
 // - the times at which somebody pushed it.
 #include "tests/support/catch.hpp"
+#include "tests/tools/diagnosis/finding_parameter.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tests/tools/support/ur5_runs.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
@@ -20,6 +21,7 @@
 namespace {
 
 using namespace dfdyn::tools;
+using dfdyn::tests::parameter;
 
 /// Motor currents of the robot; several runs are joined into one recording.
 Recording currents(const std::vector<std::string>& runs) {
@@ -37,12 +39,6 @@ bool is_friction(const Finding& finding) {
     return finding.effect == "viscous_friction" || finding.effect == "coulomb_friction" ||
            finding.effect == "stribeck_friction" || finding.effect == "presliding_hysteresis" ||
            finding.effect == "load_dependent_friction";
-}
-
-double parameter(const Finding& finding, const std::string& name) {
-    const auto found = std::ranges::find(finding.parameters, name, &FoundParameter::name);
-    REQUIRE(found != finding.parameters.end());
-    return found->value;
 }
 
 bool is_contact(const Finding& finding) { return finding.effect == "external_contact"; }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A Stäubli TX40 whose owner documents its friction (tests/data/tx40_figaroh/PROVENANCE.md).
 #include "tests/support/catch.hpp"
+#include "tests/tools/robot/arms.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
-#include "tools/robot/urdf/read_robot.hpp"
 
 #include <algorithm>
 #include <array>
@@ -24,15 +24,13 @@ constexpr std::array<double, 6> documented_rotors{0.362, 0.362, 0.0988, 0.0313, 
 
 Diagnosis diagnosis_of_tx40() {
     const std::string data = DFDYN_TEST_DATA_DIR;
-    ReadRobotOptions chain;
-    chain.tip = "tool0";
-    const Robot robot = read_robot(data + "/robots/tx40/tx40.urdf", chain);
     ReadOptions columns;
     columns.joint_count = 6;
     columns.outputs = OutputKind::joint_torque;
     DiagnosisOptions how;
     how.measure = false;
-    return diagnose(robot, read_recording(data + "/tx40_figaroh/tx40_5kHz.csv", columns), how).diagnosis;
+    return diagnose(dfdyn::tests::tx40(), read_recording(data + "/tx40_figaroh/tx40_5kHz.csv", columns), how)
+        .diagnosis;
 }
 
 /// Mean of the parameters of a finding; 0 if there is no such finding.

@@ -27,6 +27,12 @@ inline tools::Robot small_arm() {
     return tools::read_robot(DFDYN_TEST_DATA_DIR "/robots/small_arm/small_arm.urdf", options);
 }
 
+inline tools::Robot tx40() {
+    tools::ReadRobotOptions options;
+    options.tip = "tool0";
+    return tools::read_robot(DFDYN_TEST_DATA_DIR "/robots/tx40/tx40.urdf", options);
+}
+
 /// Two links of length 1 m that turn about z, with the given gravity along -y.
 inline tools::Robot planar_arm(double gravity) {
     tools::Robot robot;

@@ -26,13 +26,6 @@ Recording currents(const std::string& file) {
     return read_recording(data + "/" + file, options);
 }
 
-Robot arm_of(const std::string& file, const std::string& base, const std::string& tip) {
-    ReadRobotOptions options;
-    options.base = base;
-    options.tip = tip;
-    return read_robot(data + "/robots/" + file, options);
-}
-
 /// The texts of all mistakes, one per line.
 std::string mistakes_in(const Recording& recording, const SetupQuestion& question) {
     std::string texts;
@@ -68,12 +61,8 @@ TEST_CASE("no part of a short recording with uneven steps is taken for another r
 
 /// Checks correct recordings of random arms, motions and loads.
 void check_right_runs(int count, std::mt19937_64& engine) {
-    const std::vector<Robot> robots{ur5(),
-                                    arm_of("small_arm/small_arm.urdf", "base", "tool"),
-                                    planar_arm(0),
-                                    planar_arm(9.81),
-                                    icub_right_arm(),
-                                    arm_of("tx40/tx40.urdf", "base_link", "tool0")};
+    const std::vector<Robot> robots{ur5(), small_arm(), planar_arm(0), planar_arm(9.81), icub_right_arm(),
+                                    tx40()};
     for (int run = 0; run < count; ++run) {
         const Robot& robot = robots[engine() % robots.size()];
         const OutputKind outputs = engine() % 3 == 0 && robot.sensor ? OutputKind::wrench
@@ -188,7 +177,7 @@ TEST_CASE("a wrench of the wrong sign is rejected with a reference to --wrench-d
 }
 
 TEST_CASE("an unsuitable robot or torque constants restrict the check to the recording alone") {
-    const Robot small = arm_of("small_arm/small_arm.urdf", "base", "tool");
+    const Robot small = small_arm();
     const Robot robot = ur5();
     const Recording right = currents("ur5_kufieta/Movement_No3_Acc.csv");
     CHECK(check_setup(right, {OutputKind::motor_current, &small}).empty());

@@ -19,13 +19,6 @@ using namespace dfdyn::tests;
 
 const std::string data = DFDYN_TEST_DATA_DIR;
 
-Robot tx40() {
-    ReadRobotOptions options;
-    options.base = "base_link";
-    options.tip = "tool0";
-    return read_robot(data + "/robots/tx40/tx40.urdf", options);
-}
-
 Setup recorded(const std::string& name, const std::string& file, OutputKind outputs, const Robot& robot) {
     ReadOptions options;
     options.outputs = outputs;

@@ -2,6 +2,7 @@
 #include "tests/diagnosis/panel/changes/change_case.hpp"
 
 #include "tests/diagnosis/panel/recording/panel_random.hpp"
+#include "tests/tools/support/append_row.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/model/structure.hpp"
 #include "tools/replay/contradiction.hpp"
@@ -180,18 +181,10 @@ Recording simulate_rows(const PanelRobot& kind, const Robot& robot, const Scenar
     for (std::size_t row = 0; row < scenario.recording.samples; ++row) {
         *clock = static_cast<double>(row) / change_rate_hz;
         const SimulatedSample sample = simulation.next();
-        recording.time_s.push_back(sample.time_s);
-        recording.time_ns.push_back(std::llround(sample.time_s * 1e9));
-        recording.gap_before.push_back(row == 0 ? 1 : 0);
-        for (const double q : sample.position) {
-            recording.position.values.push_back(q);
-        }
         if (kind.outputs == OutputKind::wrench) {
-            recording.output.values.insert(recording.output.values.end(), sample.wrench.begin(),
-                                           sample.wrench.end());
+            append_row(recording, sample.time_s, sample.position, sample.wrench);
         } else {
-            recording.output.values.insert(recording.output.values.end(), sample.torque.begin(),
-                                           sample.torque.end());
+            append_row(recording, sample.time_s, sample.position, sample.torque);
         }
     }
     return recording;

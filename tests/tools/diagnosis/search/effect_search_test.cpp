@@ -111,7 +111,7 @@ TEST_CASE(
     "two chosen effects are replaced by one that does the same, if one of them may be half of another") {
     DFDYN_SEEDED_ENGINE(engine);
     MatrixXd columns = random_columns(5, engine);
-    columns.col(4) = columns.rightCols(4).leftCols(3).rowwise().sum();
+    columns.col(4) = columns.middleCols(1, 3).rowwise().sum();
     const VectorXd target = columns.col(0) + columns.col(4) + random_columns(1, engine);
     SearchProblem problem = problem_of(columns, target);
     problem.candidates[0].shapes.push_back({{0, 1, 2, 3}, anything});
