@@ -40,10 +40,10 @@ inline tools::DiagnosisSignals signals_of(const tools::Robot& robot, tools::Outp
 }
 
 /// A fitted model that has only the rigid body, without friction and delays.
-inline tools::FittedModel rigid_model(const tools::DiagnosisSignals& signals, bool gains_known = true) {
+inline tools::FittedModel rigid_model(const tools::DiagnosisSignals& signals, bool gains_may_err = true) {
     return {signals.nominal,
             Eigen::MatrixXd::Zero(signals.rows(), static_cast<Eigen::Index>(signals.joints())),
-            Eigen::VectorXd::Zero(signals.outputs()), gains_known};
+            Eigen::VectorXd::Zero(signals.outputs()), gains_may_err};
 }
 
 inline const tools::Candidate& find(const std::vector<tools::Candidate>& candidates,

@@ -10,11 +10,11 @@ namespace {
 
 constexpr ParameterKind true_over_assumed{"gain", "1", 1};
 
-/// Returns no candidate for a wrench, or for motor currents with unknown torque constants: their unit is
-/// unknown, so a gain error cannot be distinguished.
+/// Returns no candidate for a wrench, while gains are not doubted, or for motor currents with unknown torque
+/// constants: their unit is unknown, so a gain error cannot be distinguished.
 std::vector<Candidate> actuator_gain_candidates(const DiagnosisSignals& signals, const FittedModel& model,
                                                 std::size_t number) {
-    if (signals.wrench() || !model.gains_known) {
+    if (signals.wrench() || !model.gains_may_err) {
         return {};
     }
     const auto output = static_cast<Eigen::Index>(number);

@@ -43,10 +43,10 @@ enum class TextbookTerm : std::uint8_t { gain, inertia, viscous, dry, offset };
 
 /// Quantities of a fitted model. Candidates that depend on them are made again after each fit.
 struct FittedModel {
-    Eigen::MatrixXd output;   ///< T x m: outputs that an ideal sensor would measure
-    Eigen::MatrixXd friction; ///< T x n: the joints' friction (N·m); no columns for a wrench
-    Eigen::VectorXd delay_s;  ///< m: the output's delay in this model
-    bool gains_known = true;  ///< false: motor currents of unknown torque constants
+    Eigen::MatrixXd output;    ///< T x m: outputs that an ideal sensor would measure
+    Eigen::MatrixXd friction;  ///< T x n: the joints' friction (N·m); no columns for a wrench
+    Eigen::VectorXd delay_s;   ///< m: the output's delay in this model
+    bool gains_may_err = true; ///< false: given gains are not doubted yet, or are unknown torque constants
 };
 
 /// Residual of a fitted model, with its coefficients.

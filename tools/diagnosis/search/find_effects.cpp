@@ -88,6 +88,9 @@ class Search {
     EffectRegression regression_;
     std::vector<CandidateEntry> static_; ///< candidates that do not depend on the current model
     bool chose_yielding_ = false;
+    /// Given gains are doubted only after a search for the other causes: an actuator's gain multiplies the
+    /// whole output, and would grow together with friction and masses that are not found yet.
+    bool doubts_gains_ = false;
     FittedEffects result_;
     NuisanceParameters nuisance_;
 };
@@ -99,6 +102,7 @@ void Search::settle() {
         if (options_.progress) {
             options_.progress(round);
         }
+        doubts_gains_ = round >= white_rounds;
         const std::vector<CandidateEntry> dependent = model_dependent();
         refine();
         gather(dependent);
@@ -126,7 +130,7 @@ FittedModel Search::fitted_model() const {
     };
     FittedModel model{signals_.nominal + of(&Effect::beyond_arm, false),
                       signals_.wrench() ? Eigen::MatrixXd() : of(&Effect::friction, true),
-                      Eigen::VectorXd::Zero(signals_.outputs()), options_.gains_known};
+                      Eigen::VectorXd::Zero(signals_.outputs()), options_.gains_known && doubts_gains_};
     for (std::size_t i = 0; i < result_.chosen.size(); ++i) {
         const Candidate& candidate = result_.candidates[result_.chosen[i].candidate];
         if (has_trait(candidate.effect, &Effect::delays_output)) {
