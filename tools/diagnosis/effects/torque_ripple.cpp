@@ -32,21 +32,22 @@ struct RippleGain {
 /// the ripple's current frequency.
 std::vector<RippleGain> ripple_gains(const DiagnosisSignals& signals, const EffectRegression& regression,
                                      const Eigen::MatrixXd& weighted, Eigen::Index joint) {
-    const Eigen::VectorXd position = signals.measured.motion.position.col(joint);
-    const Eigen::VectorXd velocity = signals.measured.motion.velocity.col(joint);
+    const Eigen::ArrayXd position = signals.measured.motion.position.col(joint);
+    const Eigen::ArrayXd velocity = signals.measured.motion.velocity.col(joint);
+    const Eigen::ArrayXd wave_energy = 0.5 / regression.noise().col(joint).array(); // per bin
     const double bin_hz = 1 / (2 * SpectralRows::hop_s);
     const std::complex<double> turn(0, 1);
-    const Eigen::ArrayXcd once = (turn * position.array()).exp();
-    Eigen::ArrayXcd phase = (turn * static_cast<double>(fewest_cycles - 1) * position.array()).exp();
+    const Eigen::ArrayXcd once = (turn * position).exp();
+    Eigen::ArrayXcd phase = (turn * static_cast<double>(fewest_cycles - 1) * position).exp();
     std::vector<RippleGain> result;
     for (int cycles = fewest_cycles; cycles <= most_cycles; ++cycles) {
         phase *= once;
         const std::complex<double> product = (phase * weighted.col(joint).array()).sum();
+        const Eigen::ArrayXd bins = (cycles * velocity).abs() / (2 * std::numbers::pi) / bin_hz;
         double energy = 0;
-        for (Eigen::Index row = 0; row < position.size(); ++row) {
-            const double frequency_hz = std::abs(cycles * velocity[row]) / (2 * std::numbers::pi);
-            const auto bin = static_cast<Eigen::Index>(frequency_hz / bin_hz);
-            energy += bin < regression.rows().bins() ? 0.5 / regression.noise()(bin, joint) : 0;
+        for (const double at : bins) {
+            const auto bin = static_cast<Eigen::Index>(at);
+            energy += bin < wave_energy.size() ? wave_energy[bin] : 0;
         }
         result.push_back({energy > 0 ? std::norm(product) / energy : 0, cycles});
     }

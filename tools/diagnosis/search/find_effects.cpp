@@ -70,7 +70,7 @@ class Search {
                      const FittedResidual& residual) const;
     std::vector<CandidateEntry> model_dependent() const;
     void refine();
-    void set_candidates(const std::vector<CandidateEntry>& entries);
+    void set_candidates(const std::vector<const CandidateEntry*>& entries);
     void gather(const std::vector<CandidateEntry>& model_dependent);
     void estimate_noise(bool white);
     void reset_event_thresholds();
@@ -217,27 +217,27 @@ void Search::refine() {
 }
 
 /// Replaces the candidates of the problem. Their columns follow the nuisance parameters'.
-void Search::set_candidates(const std::vector<CandidateEntry>& entries) {
+void Search::set_candidates(const std::vector<const CandidateEntry*>& entries) {
     std::vector<SpectralColumnPointer> columns = nuisance_.columns();
     std::map<std::string, std::size_t> families{{"", 0}};
     result_.candidates.clear();
     result_.problem.candidates.clear();
-    for (const CandidateEntry& entry : entries) {
+    for (const CandidateEntry* const entry : entries) {
         SearchCandidate candidate;
-        candidate.family = families.emplace(entry.candidate.family, families.size()).first->second;
-        candidate.tried = entry.candidate.tried;
-        candidate.evidence_offset = entry.candidate.evidence_offset;
-        candidate.may_be_half = yields(entry.candidate) || entry.candidate.always_relinearized;
-        for (const EffectShape& shape : entry.candidate.shapes) {
+        candidate.family = families.emplace(entry->candidate.family, families.size()).first->second;
+        candidate.tried = entry->candidate.tried;
+        candidate.evidence_offset = entry->candidate.evidence_offset;
+        candidate.may_be_half = yields(entry->candidate) || entry->candidate.always_relinearized;
+        for (const EffectShape& shape : entry->candidate.shapes) {
             SearchCandidate::Shape one{{}, shape.allowed, shape.bounded, shape.nearest};
             for (const std::size_t column : shape.columns) {
                 one.columns.push_back(static_cast<Eigen::Index>(columns.size() + column));
             }
             candidate.shapes.push_back(std::move(one));
         }
-        columns.insert(columns.end(), entry.columns.begin(), entry.columns.end());
+        columns.insert(columns.end(), entry->columns.begin(), entry->columns.end());
         result_.problem.candidates.push_back(std::move(candidate));
-        result_.candidates.push_back(entry.candidate);
+        result_.candidates.push_back(entry->candidate);
     }
     regression_.set_columns(std::move(columns));
 }
@@ -246,15 +246,17 @@ void Search::set_candidates(const std::vector<CandidateEntry>& entries) {
 /// exist.
 void Search::gather(const std::vector<CandidateEntry>& model_dependent) {
     const std::vector<KeptChoice> chosen = kept_choices(result_);
-    std::vector<CandidateEntry> entries;
+    std::vector<const CandidateEntry*> entries;
     for (const CandidateEntry& entry : static_) {
         const std::string key = entry.candidate.key();
         if (std::ranges::none_of(model_dependent,
                                  [&](const CandidateEntry& one) { return one.candidate.key() == key; })) {
-            entries.push_back(entry);
+            entries.push_back(&entry);
         }
     }
-    entries.insert(entries.end(), model_dependent.begin(), model_dependent.end());
+    for (const CandidateEntry& entry : model_dependent) {
+        entries.push_back(&entry);
+    }
     set_candidates(entries);
     set_classes(result_);
     result_.problem.nuisance = nuisance_.priors();
