@@ -35,6 +35,14 @@ Diagnosis diagnosis_of_run(const Recording& recording, bool measure = false) {
     return diagnose(dfdyn::tests::ur5(), recording, how).diagnosis;
 }
 
+/// Diagnoses one run with torque constants that were estimated from No6 by itself.
+Diagnosis diagnosis_with_constants(const std::string& run) {
+    DiagnosisOptions how;
+    how.outputs = OutputKind::motor_current;
+    how.torque_constants = {8.2, 11.4, 9.4, 7.0, 11.0, 1.3};
+    return diagnose(dfdyn::tests::ur5(), currents({run}), how).diagnosis;
+}
+
 bool is_friction(const Finding& finding) {
     return finding.effect == "viscous_friction" || finding.effect == "coulomb_friction" ||
            finding.effect == "stribeck_friction" || finding.effect == "presliding_hysteresis" ||
@@ -169,10 +177,7 @@ TEST_CASE(
 }
 
 TEST_CASE("in a short run of a real arm given torque constants are kept and friction is that of other runs") {
-    DiagnosisOptions how;
-    how.outputs = OutputKind::motor_current;
-    how.torque_constants = {8.2, 11.4, 9.4, 7.0, 11.0, 1.3}; // of No6 by itself
-    const Diagnosis diagnosis = diagnose(dfdyn::tests::ur5(), currents({"No1"}), how).diagnosis;
+    const Diagnosis diagnosis = diagnosis_with_constants("No1");
     for (const Finding& finding : diagnosis.findings) {
         INFO(finding.effect << " at " << finding.where);
         CHECK_FALSE((finding.effect == "actuator_gain" && finding.confidence >= 0.5));
@@ -190,13 +195,10 @@ TEST_CASE("in a short run of a real arm given torque constants are kept and fric
 TEST_CASE(
     "dry friction of joints 1 and 3 and 5 of a real arm differs by less than 40 % between four recordings",
     "[.long]") {
-    DiagnosisOptions how;
-    how.outputs = OutputKind::motor_current;
-    how.torque_constants = {8.2, 11.4, 9.4, 7.0, 11.0, 1.3}; // of No6 by itself
     std::vector<Diagnosis> diagnoses;
     for (const char* const run : {"No5_Acc_slow_no_disturbance", "No6_Acc_slow_Verify_Model",
                                   "No7_Acc_slow_Verify_Model_short", "No9_Singularity_Free_NoDist"}) {
-        diagnoses.push_back(diagnose(dfdyn::tests::ur5(), currents({run}), how).diagnosis);
+        diagnoses.push_back(diagnosis_with_constants(run));
     }
     for (const char* const joint : {"joint1", "joint3", "joint5"}) {
         CAPTURE(joint);
