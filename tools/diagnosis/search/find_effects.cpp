@@ -63,12 +63,12 @@ class Search {
 
   private:
     void settle();
-    FittedModel fitted_model() const;
+    FittedModel fitted_model(bool gains_may_err) const;
     FittedResidual fitted_residual() const;
     void add(std::vector<Candidate>& found, std::vector<Candidate> more) const;
     void add_scanned(std::vector<Candidate>& found, const Effect& effect, const EffectScan& scan,
                      const FittedResidual& residual) const;
-    std::vector<CandidateEntry> model_dependent() const;
+    std::vector<CandidateEntry> model_dependent(bool gains_may_err) const;
     void refine();
     void set_candidates(const std::vector<const CandidateEntry*>& entries);
     void gather(const std::vector<CandidateEntry>& model_dependent);
@@ -88,9 +88,6 @@ class Search {
     EffectRegression regression_;
     std::vector<CandidateEntry> static_; ///< candidates that do not depend on the current model
     bool chose_yielding_ = false;
-    /// Given gains are doubted only after a search for the other causes: an actuator's gain multiplies the
-    /// whole output, and would grow together with friction and masses that are not found yet.
-    bool doubts_gains_ = false;
     FittedEffects result_;
     NuisanceParameters nuisance_;
 };
@@ -102,8 +99,10 @@ void Search::settle() {
         if (options_.progress) {
             options_.progress(round);
         }
-        doubts_gains_ = round >= white_rounds;
-        const std::vector<CandidateEntry> dependent = model_dependent();
+        // A gain multiplies the whole output: it would grow together with friction and masses that are not
+        // found yet. Given gains are therefore doubted only after a search for the other causes.
+        const bool gains_may_err = options_.gains_known && round >= white_rounds;
+        const std::vector<CandidateEntry> dependent = model_dependent(gains_may_err);
         refine();
         gather(dependent);
         result_.chosen = search_effects(result_.problem, result_.chosen);
@@ -122,7 +121,7 @@ void Search::settle() {
     }
 }
 
-FittedModel Search::fitted_model() const {
+FittedModel Search::fitted_model(bool gains_may_err) const {
     const auto of = [&](bool Effect::*trait, bool value) {
         return result_.effects(signals_, [trait, value](const Candidate& candidate) {
             return has_trait(candidate.effect, trait) == value;
@@ -130,7 +129,7 @@ FittedModel Search::fitted_model() const {
     };
     FittedModel model{signals_.nominal + of(&Effect::beyond_arm, false),
                       signals_.wrench() ? Eigen::MatrixXd() : of(&Effect::friction, true),
-                      Eigen::VectorXd::Zero(signals_.outputs()), options_.gains_known && doubts_gains_};
+                      Eigen::VectorXd::Zero(signals_.outputs()), gains_may_err};
     for (std::size_t i = 0; i < result_.chosen.size(); ++i) {
         const Candidate& candidate = result_.candidates[result_.chosen[i].candidate];
         if (has_trait(candidate.effect, &Effect::delays_output)) {
@@ -176,9 +175,9 @@ void Search::add_scanned(std::vector<Candidate>& found, const Effect& effect, co
 }
 
 /// Returns the candidates that depend on the current model.
-std::vector<CandidateEntry> Search::model_dependent() const {
+std::vector<CandidateEntry> Search::model_dependent(bool gains_may_err) const {
     std::vector<Candidate> found;
-    add(found, fitted_candidates(signals_, fitted_model(), options_.effects));
+    add(found, fitted_candidates(signals_, fitted_model(gains_may_err), options_.effects));
     add(found, relinearized_always(result_));
     for (std::size_t i = 0; i < result_.chosen.size(); ++i) {
         const Candidate& chosen = result_.candidates[result_.chosen[i].candidate];
