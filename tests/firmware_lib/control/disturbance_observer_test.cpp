@@ -110,6 +110,45 @@ TEST_CASE("rounded rates change an estimate by hardly more than its step") {
     CHECK(after_rounding(0.001, 0.5).slope == Approx(bandwidth).epsilon(0.05));
 }
 
+/// Largest change in a tick of feedback and estimate, after the first second, for a rate that is rounded to
+/// multiples of `count` and damped with `damping` N·m·s/rad.
+double change_by_count(double count, double damping, double step) {
+    constexpr double period = 1e-3, inertia = 1.5;
+    Observer observer({}, {period, {{bandwidth}}, {{1e6}}, {{step}}, {{unlimited}}});
+    double largest = 0, before = 0;
+    for (int tick = 0; tick < 5000; ++tick) {
+        const double rate = count * std::round(0.7 * std::sin(0.03 * tick) + 0.6 * std::sin(0.41 * tick));
+        const double feedback = damping * rate;
+        const double after = feedback + observer.update(&feedback, &inertia, &rate, &none)[0];
+        largest = std::max(largest, tick > 1000 ? std::abs(after - before) : 0);
+        before = after;
+    }
+    return largest;
+}
+
+TEST_CASE("where the feedback is noisy the observer adds less noise of its own") {
+    constexpr double step = 0.5, count = 0.1;
+    const double quiet = 0.3 * step / count, noisy = 1.6 * step / count;
+    CHECK(change_by_count(count, quiet, step) == Approx((1 + 0.3) * step).epsilon(0.05));
+    CHECK(change_by_count(count, noisy, step) == Approx(2 * step).epsilon(0.05));
+    CHECK(change_by_count(count, 3 * noisy, step) == Approx(4.8 * step + step / 4).epsilon(0.05));
+}
+
+TEST_CASE("an estimate does not jump when its bandwidth changes or it begins in motion") {
+    constexpr double period = 1e-3, inertia = 1.5, step = 0.5;
+    Observer observer({}, {period, {{bandwidth}}, {{1e6}}, {{step}}, {{unlimited}}});
+    double rate = 3; // rad/s
+    CHECK(observer.update(&none, &inertia, &rate, &none)[0] == 0);
+    const auto change_to = [&](double next) {
+        const double before = observer.estimate()[0];
+        rate = next;
+        return std::abs(observer.update(&none, &inertia, &rate, &none)[0] - before);
+    };
+    CHECK(change_to(3.001) == Approx(bandwidth * inertia * 0.001));
+    CHECK(change_to(3.1) == Approx(step)); // the bandwidth falls to an eighth
+    CHECK(change_to(3.11) < step);
+}
+
 /// Torques of feedback and observer on a motor whose link is held by an elastic gear.
 struct ElasticRun {
     double share;  ///< left of the observer's bandwidth

@@ -27,14 +27,15 @@ namespace dfdyn {
 ///
 /// `LoopMargin` computes the bandwidth that a loop tolerates. Rounded positions make de/dt noisy, and b J
 /// de/dt more so than the damping of the feedback. The bandwidth is therefore at most `step` over the largest
-/// change of J de/dt in a tick, which is remembered for about `memory_s`.
+/// change of J de/dt in a tick, which is remembered for about `memory_s`. Where the feedback itself changes
+/// by more than `step` in a tick, what is more is taken off this `step`, down to a quarter of it.
 ///
 /// Elastic gears, of which the margin knows nothing, can make a joint vibrate. Each time `VibrationWatch`
 /// finds that the torque of feedback and observer does so, the joint's bandwidth is halved, for good, down to
 /// `least_share`. Pass `share()` to `FeedForward::observer_bandwidth_share`.
 ///
-/// If the joint is blocked, the estimate rises to its limit. Cost: 16 multiply-adds per joint and tick, 3
-/// more at a turn; 16 n + 2 scalars. Never allocates.
+/// If the joint is blocked, the estimate rises to its limit. Cost: 21 multiply-adds per joint and tick, 3
+/// more at a turn; 19 n + 2 scalars. Never allocates.
 template <class Scalar, int n>
 class DisturbanceObserver {
   public:
@@ -55,7 +56,8 @@ class DisturbanceObserver {
     /// Starts without an estimate. `joint_count`: n.
     DisturbanceObserver(Extent<n> joint_count, Settings settings) noexcept
         : joints_(joint_count), settings_(std::move(settings)), integral_(Torques::zeros(joint_count)),
-          estimate_(integral_), momentum_(integral_), change_(integral_), share_(integral_),
+          estimate_(integral_), bandwidth_(integral_), momentum_(integral_), change_(integral_),
+          feedback_(integral_), feedback_change_(integral_), share_(integral_),
           watch_(joint_count, settings_.period_s) {
         std::fill(share_.begin(), share_.end(), Scalar(1));
     }
@@ -64,7 +66,8 @@ class DisturbanceObserver {
     void restart() noexcept {
         watch_.restart();
         for (int k = 0; k < joints_; ++k) {
-            integral_[k] = estimate_[k] = momentum_[k] = change_[k] = 0;
+            integral_[k] = estimate_[k] = bandwidth_[k] = momentum_[k] = change_[k] = 0;
+            feedback_[k] = feedback_change_[k] = 0;
         }
     }
 
@@ -84,12 +87,21 @@ class DisturbanceObserver {
                 watch_.pass(k);
                 continue;
             }
-            const Scalar bandwidth = bandwidth_for(momentum, k);
-            const Scalar rise = bandwidth * settings_.period_s * feedback[k];
-            const Scalar fast = bandwidth * momentum;
+            if (bandwidth_[k] <= 0) { // the first tick has no past
+                momentum_[k] = momentum;
+                feedback_[k] = feedback[k];
+            }
+            const Scalar before = bandwidth_[k] * momentum_[k];
+            adapt_bandwidth(momentum, feedback[k], k);
             const Scalar most = settings_.limit[k];
-            integral_[k] = std::clamp(integral_[k] + (rise * excess[k] > 0 ? 0 : rise), -most, most);
-            estimate_[k] = std::clamp(integral_[k] + fast, -most, most);
+            const Scalar rise = bandwidth_[k] * settings_.period_s * feedback[k];
+            // a change of the bandwidth alone does not change the estimate
+            const Scalar transfer = before - bandwidth_[k] * momentum_[k];
+            const Scalar grown = integral_[k] + transfer + (rise * excess[k] > 0 ? 0 : rise);
+            integral_[k] = std::clamp(grown, -most, most);
+            momentum_[k] = momentum;
+            feedback_[k] = feedback[k];
+            estimate_[k] = std::clamp(integral_[k] + bandwidth_[k] * momentum, -most, most);
             if (watch_.vibrates(k, feedback[k] + estimate_[k], settings_.swing[k]) &&
                 settings_.bandwidth[k] > 0) {
                 share_[k] = std::max(share_[k] / 2, least_share);
@@ -110,24 +122,29 @@ class DisturbanceObserver {
 
     /// Returns the largest number of multiply-adds of `update`.
     [[nodiscard]] static constexpr std::int64_t cost(Extent<n> joint_count) noexcept {
-        return std::int64_t{19} * joint_count;
+        return std::int64_t{24} * joint_count;
     }
 
   private:
-    /// Returns the bandwidth at which J de/dt changes the estimate by at most the joint's step.
-    Scalar bandwidth_for(Scalar momentum, int k) noexcept {
-        const Scalar kept = change_[k] * (1 - settings_.period_s / memory_s);
-        change_[k] = std::max(std::abs(momentum - momentum_[k]), kept);
-        momentum_[k] = momentum;
-        const Scalar most = share_[k] * settings_.bandwidth[k], step = settings_.step[k];
-        return most * change_[k] > step ? step / change_[k] : most;
+    /// Sets the bandwidth at which J de/dt changes the estimate by at most what the feedback's changes leave
+    /// of twice the joint's step.
+    void adapt_bandwidth(Scalar momentum, Scalar feedback, int k) noexcept {
+        const Scalar kept = 1 - settings_.period_s / memory_s;
+        change_[k] = std::max(std::abs(momentum - momentum_[k]), kept * change_[k]);
+        feedback_change_[k] = std::max(std::abs(feedback - feedback_[k]), kept * feedback_change_[k]);
+        const Scalar step = settings_.step[k], most = share_[k] * settings_.bandwidth[k];
+        const Scalar left = std::clamp(2 * step - feedback_change_[k], step / 4, step);
+        bandwidth_[k] = most * change_[k] > left ? left / change_[k] : most;
     }
 
     [[no_unique_address]] Extent<n> joints_;
     Settings settings_;
     Torques integral_, estimate_;
-    Torques momentum_; ///< J de/dt at the last tick, N·m·s
-    Torques change_;   ///< its largest change in a tick, N·m·s
+    Torques bandwidth_;       ///< at the last tick, rad/s
+    Torques momentum_;        ///< J de/dt at the last tick, N·m·s
+    Torques change_;          ///< its largest change in a tick, N·m·s
+    Torques feedback_;        ///< at the last tick, N·m
+    Torques feedback_change_; ///< its largest change in a tick, N·m
     Torques share_;
     VibrationWatch<Scalar, n> watch_;
 };
