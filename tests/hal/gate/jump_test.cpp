@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/hal/gate/jump.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
 
 #include <cmath>
+
+#include <random>
 
 namespace jump_test {
 
@@ -40,6 +43,20 @@ TEST_CASE("after a silence, three consistent outputs are required") {
     CHECK(gate.jumps({force(511)}, 2 * ms * 511));
     CHECK(gate.jumps({force(512)}, 2 * ms * 512));
     CHECK_FALSE(gate.jumps({force(513)}, 2 * ms * 513));
+}
+
+TEST_CASE("a quiet output that changes by a count now and then does not jump") {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr double count = 0.05;
+    for (const double noise_counts : {0.1, 0.2, 0.3, 0.5, 1.0}) {
+        std::normal_distribution<double> noise(0, noise_counts);
+        JumpGate<1> gate(6 * ms);
+        for (int tick = 0; tick < 10'000; ++tick) {
+            const double counts = 40 * std::sin(2e-4 * tick) + noise(engine);
+            CAPTURE(noise_counts, tick);
+            REQUIRE_FALSE(gate.jumps({count * std::round(counts)}, 2 * ms * tick));
+        }
+    }
 }
 
 TEST_CASE("a jump to identical outputs is rejected") {

@@ -12,7 +12,8 @@ namespace dfdyn::hal {
 
 /// Detects an output whose prediction error is much larger than usual. Each channel is predicted by the last
 /// output or by the line through the last two, whichever had the smaller errors. The limit is ten times the
-/// usual error, and at least 0.5 % of the largest value so far. A force may change at any rate. So several
+/// usual error and 0.5 % of the largest value so far, and at least a few of the smallest changes, which are
+/// the counts of a quiet sensor. A force may change at any rate. So several
 /// consecutive outputs that are consistent are accepted, unless they are identical (frozen sensor).
 /// O(values).
 template <int values>
@@ -55,6 +56,8 @@ class JumpGate {
     static constexpr int enough_after_silence = 3;
     static constexpr double usual_times = 10;
     static constexpr double share_of_largest = 0.005;
+    /// Of the smallest change. A change by one count and back is a bend by two; rounding adds to both.
+    static constexpr double counts_of_change = 2.5, counts_of_bend = 3.5;
     static constexpr double implausible = 3; ///< limit of a learned error, in usual errors; ten diverges
 
     /// The last consistent outputs.
@@ -90,7 +93,10 @@ class JumpGate {
                 magnitude(value[i] - line.last[i] - line.slope[i] * static_cast<double>(age_ns));
             const bool straight = line.count > 1 && usual_bend_[i] < usual_change_[i];
             const double usual = straight ? usual_bend_[i] : usual_change_[i];
-            const double limit = usual_times * usual + share_of_largest * largest_[i];
+            smallest_[i] = change > 0 && !(smallest_[i] > 0 && smallest_[i] < change) ? change : smallest_[i];
+            const double counts = straight ? counts_of_bend : counts_of_change;
+            const double limit =
+                std::max(usual_times * usual + share_of_largest * largest_[i], counts * smallest_[i]);
             near = near && (straight ? bend : change) <= limit;
             const double most = learned_ < first_outputs ? change + bend : implausible * usual;
             usual_change_[i] +=
@@ -108,6 +114,7 @@ class JumpGate {
     Values usual_change_{}; ///< between consecutive outputs
     Values usual_bend_{};   ///< distance from the line through the two before
     Values largest_{};
+    Values smallest_{}; ///< change that is not 0
     int learned_ = 0;
     std::uint64_t jumps_ = 0;
 };
