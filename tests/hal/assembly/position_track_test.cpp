@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+
 namespace position_track_test {
 
 using namespace dfdyn::hal;
@@ -106,6 +108,64 @@ TEST_CASE("a device fault requires new qualification; an answer to an unknown SY
     Joint restarted = moving();
     CHECK(restarted.push(42 * ms, 0, Reason::device_restarted) == Reason::device_restarted);
     CHECK(restarted.push(44 * ms) == Reason::qualifying);
+}
+
+TEST_CASE("after a stall of the reader a moving joint is trusted again within twelve readings") {
+    for (const std::int64_t stall_ms : {8, 12, 30, 100}) {
+        Joint joint = moving();
+        const std::int64_t read_ns = (40 + stall_ms) * ms + ms / 5;
+        for (std::int64_t late = 2; late <= stall_ms; late += 2) { // read together, not when they were sent
+            const std::int64_t stamp_ns = read_ns + late * ms / 100;
+            const double off_rad = at((40 + late) * ms) - at(stamp_ns);
+            CHECK(joint.push(stamp_ns, off_rad) != Reason::ok);
+        }
+        int refused = 0;
+        for (std::int64_t time_ns = (42 + stall_ms) * ms; time_ns < (200 + stall_ms) * ms;
+             time_ns += 2 * ms) {
+            refused += joint.push(time_ns) == Reason::ok ? 0 : 1;
+        }
+        CAPTURE(stall_ms, refused);
+        CHECK(refused <= 12); // ten, and two until the first of those read together is out
+    }
+}
+
+TEST_CASE("a joint whose velocity shows that its position is frozen is not trusted") {
+    PositionTrack<16> track{{.max_age_ns = 6 * ms,
+                             .latency_ns = 0,
+                             .qualification = {.readings = 10, .zero_readings = 1000},
+                             .period_ns = 2 * ms,
+                             .jitter_ns = ms / 4},
+                            {-3, 3},
+                            {}};
+    const auto push = [&](std::int64_t time_ns, double position_rad, double velocity) {
+        JointValue value;
+        value.stamp_ns = time_ns;
+        value.position_reason = Reason::ok;
+        value.position_rad = value.from_zero_rad = position_rad;
+        value.step_rad = 1e-5;
+        value.has_velocity = true;
+        value.velocity = velocity;
+        return track.push(value);
+    };
+    std::int64_t time_ns = 0;
+    double position_rad = 0.1;
+    double velocity = 0;
+    const auto move = [&](double wanted, int ticks, bool frozen = false) {
+        Reason last = Reason::ok;
+        const double sent_rad = position_rad;
+        for (int tick = 0; tick < ticks; ++tick) {
+            time_ns += 2 * ms;
+            velocity += std::clamp(wanted - velocity, -0.01, 0.01);
+            position_rad += 2e-3 * velocity;
+            last = push(time_ns, frozen ? sent_rad : position_rad, velocity);
+        }
+        return last;
+    };
+    CHECK(move(0.5, 1500) == Reason::ok);
+    CHECK(move(-0.5, 1500) == Reason::ok);
+    CHECK(move(0, 200) == Reason::ok);
+    CHECK(move(0.5, 250, true) == Reason::velocity_contradicts);
+    CHECK(move(0.5, 1000) == Reason::ok); // no longer frozen
 }
 
 } // namespace position_track_test

@@ -50,6 +50,8 @@ constexpr std::pair<int, const char*> published_reasons[] = {
     {66, "position_frozen"},
     {67, "sync_unknown"},
     {68, "output_jump"},
+    {69, "frame_waited"},
+    {70, "velocity_contradicts"},
 };
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "dfdyn/hal/bus_event.hpp"
 #include "tests/hal/campaign/judge.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -261,7 +262,10 @@ class Campaign {
         for (std::size_t i = 0; i < errors_.size(); ++i) {
             const auto [error_ns, since_ns] = errors_[i];
             const bool gone = i + 1 < errors_.size() && errors_[i + 1].since_ns + clock_shows_ns < heard_ns;
-            if (gone || since_ns > heard_ns + clock_shows_ns) {
+            const bool known = std::ranges::any_of(errors, [here = error_ns](const ErrorRange& error) {
+                return error.range_ns == 0 && error.least_ns == here;
+            });
+            if (gone || known || since_ns > heard_ns + clock_shows_ns) {
                 continue;
             }
             for (std::size_t k = 0, before = errors.size(); k < before; ++k) {

@@ -54,7 +54,7 @@ hal::Decoded BusOutput::take(const hal::Frame& frame) noexcept {
     return std::visit([&](auto& output) { return output.take(frame); }, output_);
 }
 
-void BusOutput::take(const hal::JointValue& value, double position_rad) noexcept {
+void BusOutput::take(const hal::JointValue& value, std::optional<double> position_rad) noexcept {
     std::visit([&](auto& output) { output.take(value, position_rad); }, output_);
 }
 

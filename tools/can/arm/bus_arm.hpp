@@ -28,7 +28,7 @@ class BusOutput {
 
     Extent<outputs> size() const noexcept;
     hal::Decoded take(const hal::Frame& frame) noexcept;
-    void take(const hal::JointValue& value, double position_rad) noexcept;
+    void take(const hal::JointValue& value, std::optional<double> position_rad) noexcept;
     bool claims(std::uint32_t id) const noexcept;
     /// The values after those of the outputs are 0.
     hal::Measurement<hal::places(outputs)> at(std::int64_t instant_ns, std::int64_t now_ns) noexcept;

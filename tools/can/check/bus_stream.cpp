@@ -80,6 +80,9 @@ void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns, bo
     const auto now_ns = static_cast<double>(stamp_ns);
     const double periods = static_cast<double>(interval_ns) / period_ns;
     ++followed_;
+    if (waited(stamp_ns, period_ns)) {
+        return;
+    }
     if (std::abs(periods - 1) < same_period) {
         ++regular_;
         regular_periods_ += periods;
@@ -87,7 +90,7 @@ void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns, bo
     if (!phase_known_ || periods > gap_periods) {
         next_ns_ = now_ns + period_ns;
         phase_known_ = true;
-        in_sequence_ = skipped_ = false;
+        in_sequence_ = skipped_ = backlog_missed_ = false;
         return;
     }
     const double skipped = std::round((now_ns - next_ns_) / period_ns);
@@ -100,8 +103,17 @@ void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns, bo
     off_sequence_ += off && !is_overtaken ? 1 : 0;
     in_sequence_ = !off && skipped == 0;
     phase_.take(stamp_ns, due_ns, period_ns);
-    skipped_ = skipped > 0;
+    skipped_ = backlog_missed_ = skipped > 0;
     next_ns_ = due_ns + phase_gain * (now_ns - due_ns) + period_ns;
+}
+
+bool BusStream::waited(std::int64_t stamp_ns, double period_ns) {
+    if (!phase_known_) {
+        backlog_ = hal::BacklogGate(static_cast<std::int64_t>(period_ns));
+    }
+    const bool waits = backlog_.waited(stamp_ns) && !several;
+    missing_ -= waits && backlog_missed_ ? 1 : 0;
+    return waits;
 }
 
 void BusStream::forget_phase() noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/frame.hpp"
+#include "dfdyn/hal/gate/backlog.hpp"
 #include "tools/can/check/sequence_watch.hpp"
 
 #include <cstdint>
@@ -84,6 +85,8 @@ class BusStream {
     void take_interval(std::int64_t interval_ns, bool is_overtaken);
     void infer_period();
     void follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns, bool is_overtaken);
+    /// Returns true if the frame waited while nobody read the bus. It is not missing, and not additional.
+    bool waited(std::int64_t stamp_ns, double period_ns);
 
     double interval_square_sum_s2_ = 0;
     /// first intervals until the period is inferred; at most a few
@@ -91,6 +94,8 @@ class BusStream {
     double next_ns_ = 0;       ///< expected time of the next frame in the sequence, relative to `last_ns`
     std::int64_t missing_ = 0; ///< minus the frames that arrived in addition to the sequence
     bool skipped_ = false;     ///< the last frame skipped a place in the sequence
+    hal::BacklogGate backlog_{1};
+    bool backlog_missed_ = false; ///< the frames that waited were counted as missing
     double recent_additional_ = 0, largest_recent_ = 0;
     bool in_sequence_ = false;
     std::uint64_t off_sequence_ = 0;

@@ -115,10 +115,17 @@ enum class Reason : std::uint8_t {
     /// The output differs from the last one by more than consecutive outputs do. Ends with the next output
     /// that agrees with its predecessor, or when several consecutive outputs agree with each other.
     output_jump = 68,
+    /// The frame waited while nobody read the bus, so that the time of its values is unknown. Ends with the
+    /// next frame in time. Remedy: read more often, with a higher priority.
+    frame_waited = 69,
+    /// The joint's positions contradict the velocity in the same frames, which agreed before: the encoder is
+    /// frozen, or its scale, sign or zero changed. Ends when they agree over 0.05 rad. Remedy: check the
+    /// encoder and the device's settings.
+    velocity_contradicts = 70,
 };
 
 /// One more than the largest reason number; the size of tables that are indexed by a reason.
-inline constexpr int reason_count = 69;
+inline constexpr int reason_count = 71;
 
 /// A reason and its name in messages and files.
 struct NamedReason {
@@ -166,6 +173,8 @@ inline constexpr NamedReason reason_names[] = {
     {Reason::position_frozen, "position_frozen"},
     {Reason::sync_unknown, "sync_unknown"},
     {Reason::output_jump, "output_jump"},
+    {Reason::frame_waited, "frame_waited"},
+    {Reason::velocity_contradicts, "velocity_contradicts"},
 };
 
 /// Returns the reason's name as written in reports and logs, "ok" for none. O(number of reasons).

@@ -241,7 +241,8 @@ class SampleAssembly {
             const Reason reason = position_.push(value);
             moments_.measured(joint);
             const bool other_source = reason == Reason::position_jump || reason == Reason::position_lost ||
-                                      reason == Reason::position_frozen || reason == Reason::id_collision;
+                                      reason == Reason::position_frozen || reason == Reason::id_collision ||
+                                      reason == Reason::velocity_contradicts;
             if (other_source && judged.effort_reason == Reason::ok) {
                 judged.effort_reason = reason; // of the same frame
             }

@@ -54,6 +54,22 @@ TEST_CASE("buscheck does not report answers just before and after a SYNC as late
     CHECK(answers.late() == 20);
 }
 
+TEST_CASE("buscheck reports stalls of the reader as gaps and not as a second sender") {
+    for (const BusDescription& bus : {drives_with_sensor(), described(foc_and_robotous)}) {
+        for (const std::int64_t stall_ns : {30'000'000, 60'000'000}) {
+            const Frames frames = sound(bus);
+            const std::int64_t begin_ns = frames[frames.size() / 2].stamp_ns, end_ns = begin_ns + stall_ns;
+            std::int64_t read_ns = end_ns;
+            CAPTURE(bus.joint_family->name, stall_ns);
+            CHECK(rules(bus, changed(frames, [&](Frame& frame) {
+                            if (frame.stamp_ns > begin_ns && frame.stamp_ns < end_ns) {
+                                frame.stamp_ns = read_ns += 200;
+                            }
+                        })) == Names{"gaps"});
+        }
+    }
+}
+
 TEST_CASE("buscheck prints the number of late frames") {
     const BusDescription bus = described(foc_and_robotous);
     int count = 0;

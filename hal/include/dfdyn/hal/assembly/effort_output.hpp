@@ -4,9 +4,11 @@
 #include "dfdyn/hal/assembly/joint_count.hpp"
 #include "dfdyn/hal/assembly/position_track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/gate/backlog.hpp"
 #include "dfdyn/hal/gate/frozen_effort.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace dfdyn::hal {
@@ -34,19 +36,23 @@ class EffortOutput {
     constexpr Decoded take(const Frame& /*frame*/) noexcept { return {}; }
 
     /// Takes the effort that a joint sends with its position. The joint must belong to the arm. Zeros are
-    /// valid, so that the source need not qualify. `position_rad`: last trusted position of the joint.
-    constexpr void take(const JointValue& value, double position_rad) noexcept {
+    /// valid, so that the source need not qualify. `position_rad`: last trusted position of the joint;
+    /// none before the first, when no effort counts as frozen.
+    constexpr void take(const JointValue& value, std::optional<double> position_rad) noexcept {
         if (value.effort_reason == Reason::no_output) {
             return;
         }
         const auto joint = static_cast<std::size_t>(value.joint);
         Reason reason = value.effort_reason;
         const bool later = track_[joint].is_later(value.stamp_ns);
-        if (later && rated_ && collision_[joint].seen(rate_[joint].too_soon(value.stamp_ns))) {
+        const bool waited = later && rated_ && backlog_[joint].waited(value.stamp_ns);
+        if (waited) {
+            reason = reason == Reason::ok ? Reason::frame_waited : reason;
+        } else if (later && rated_ && collision_[joint].seen(rate_[joint].too_soon(value.stamp_ns))) {
             reason = Reason::id_collision;
         }
-        const bool known = later && value.effort_reason == Reason::ok; // from any sender
-        if (known && frozen_[joint].frozen(value.effort, position_rad, value.stamp_ns) &&
+        const bool known = later && position_rad && value.effort_reason == Reason::ok; // from any sender
+        if (known && frozen_[joint].frozen(value.effort, *position_rad, value.stamp_ns) &&
             reason == Reason::ok) {
             reason = Reason::output_frozen;
         }
@@ -116,7 +122,9 @@ class EffortOutput {
         : joints_(config.joints), track_{Track<1, capacity>(config.track, {config.range[i]},
                                                             output_reasons)...},
           frozen_{(static_cast<void>(i), FrozenEffortGate(config.frozen_limit, config.track.period_ns))...},
-          rate_{(static_cast<void>(i), joint_rate(config.track))...}, rated_(config.track.period_ns > 0) {}
+          rate_{(static_cast<void>(i), joint_rate(config.track))...},
+          backlog_{(static_cast<void>(i), BacklogGate(config.track.period_ns))...},
+          rated_(config.track.period_ns > 0) {}
 
     [[nodiscard]] constexpr std::size_t used() const noexcept { return static_cast<std::size_t>(joints_); }
 
@@ -124,6 +132,7 @@ class EffortOutput {
     PerJoint<Track<1, capacity>, n> track_;
     PerJoint<FrozenEffortGate, n> frozen_;
     PerJoint<SendRateGate, n> rate_;
+    PerJoint<BacklogGate, n> backlog_;
     bool rated_;
     PerJoint<CollisionHold, n> collision_{};
 };

@@ -3,19 +3,21 @@
 
 #include "dfdyn/hal/assembly/track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/gate/backlog.hpp"
 #include "dfdyn/hal/gate/send_rate.hpp"
 #include "dfdyn/hal/motion/motion.hpp"
+#include "dfdyn/hal/motion/velocity_witness.hpp"
 
 namespace dfdyn::hal {
 
 /// Returns the rate gate of a joint's values. A frame may wait for the bus for a whole period, and the SYNC
-/// that it answers may be irregular by a period.
+/// that it answers may be irregular by a period. The timer of a drive may be an RC oscillator.
 [[nodiscard]] constexpr SendRateGate joint_rate(const TrackConfig& config) noexcept {
-    return SendRateGate(SendRateGate::Config{config.period_ns, config.period_ns});
+    return SendRateGate(SendRateGate::Config{config.period_ns, config.period_ns, 40});
 }
 
-/// The recent positions of one joint that come from one sender (SendRateGate) and agree with the joint's
-/// motion (MotionGate).
+/// The recent positions of one joint that come from one sender (SendRateGate), were read in time
+/// (BacklogGate), and agree with the joint's motion (MotionGate) and its velocity (VelocityWitness).
 template <int capacity>
 class PositionTrack {
   public:
@@ -24,7 +26,8 @@ class PositionTrack {
         : track_(without_qualification(config), {range}, position_reasons),
           motion_(
               {limits, range, config.max_age_ns, config.period_ns, config.jitter_ns, config.qualification}),
-          rate_(joint_rate(config)), rated_(config.period_ns > 0), latency_ns_(config.latency_ns) {}
+          rate_(joint_rate(config)), backlog_(config.period_ns), rated_(config.period_ns > 0),
+          latency_ns_(config.latency_ns) {}
 
     /// Takes a device's value of this joint's position. Returns ok, or the reason of the rejection.
     constexpr Reason push(const JointValue& value) noexcept {
@@ -32,19 +35,12 @@ class PositionTrack {
             track_.push(value.stamp_ns, value.position_reason, {value.position_rad}, false);
             return Reason::time_not_increasing;
         }
-        MotionGate::Verdict verdict{value.position_reason};
-        const bool collides = rated_ && collision_.seen(rate_.too_soon(value.stamp_ns));
+        const bool waited = rated_ && backlog_.waited(value.stamp_ns);
+        const bool collides = rated_ && !waited && collision_.seen(rate_.too_soon(value.stamp_ns));
         if (collides) {
             motion_.contradict();
         }
-        if (value.position_reason == Reason::ok) {
-            verdict = motion_.take(reading_of(value));
-            verdict.reason = collides ? Reason::id_collision : verdict.reason;
-        } else if (value.position_reason == Reason::sync_unknown) { // no information about the device
-            motion_.glance(reading_of(value));
-        } else {
-            motion_.interrupt(reading_of(value));
-        }
+        const MotionGate::Verdict verdict = judge(value, waited, collides);
         track_.push(value.stamp_ns, verdict.reason, {verdict.position_rad}, false);
         return verdict.reason;
     }
@@ -72,6 +68,26 @@ class PositionTrack {
     [[nodiscard]] constexpr std::uint64_t collisions() const noexcept { return collision_.count(); }
 
   private:
+    constexpr MotionGate::Verdict judge(const JointValue& value, bool waited, bool collides) noexcept {
+        const EncoderReading reading = reading_of(value);
+        const bool has_position = value.position_reason == Reason::ok;
+        if (value.position_reason == Reason::sync_unknown || (has_position && waited)) {
+            motion_.glance(reading); // its time is unknown
+            return {has_position ? Reason::frame_waited : value.position_reason, value.position_rad};
+        }
+        if (!has_position) {
+            motion_.interrupt(reading);
+            return {value.position_reason, value.position_rad};
+        }
+        if (witness_.contradicts(value)) {
+            motion_.interrupt(reading);
+            return {Reason::velocity_contradicts, value.position_rad};
+        }
+        MotionGate::Verdict verdict = motion_.take(reading);
+        verdict.reason = collides ? Reason::id_collision : verdict.reason;
+        return verdict;
+    }
+
     [[nodiscard]] constexpr EncoderReading reading_of(const JointValue& value) const noexcept {
         return {.stamp_ns = value.stamp_ns - latency_ns_,
                 .position_rad = value.position_rad,
@@ -89,7 +105,9 @@ class PositionTrack {
 
     Track<1, capacity> track_;
     MotionGate motion_;
+    VelocityWitness witness_;
     SendRateGate rate_;
+    BacklogGate backlog_;
     bool rated_;
     std::int64_t latency_ns_;
     CollisionHold collision_;

@@ -10,6 +10,7 @@
 #include "dfdyn/hal/gate/saturation.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace dfdyn::hal {
 
@@ -57,7 +58,7 @@ class WrenchOutput {
     }
 
     /// Ignores values of joints, which do not measure a wrench.
-    constexpr void take(const JointValue& /*value*/, double /*position_rad*/) noexcept {}
+    constexpr void take(const JointValue& /*value*/, std::optional<double> /*position_rad*/) noexcept {}
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept { return source_.claims(id); }
 

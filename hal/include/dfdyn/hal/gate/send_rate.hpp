@@ -16,12 +16,14 @@ namespace dfdyn::hal {
 class SendRateGate {
   public:
     struct Config {
-        std::int64_t period_ns; ///< between two frames of the sender, by its own clock; > 0
-        std::int64_t delay_ns;  ///< jitter, and waiting for the bus; 0 … period
+        std::int64_t period_ns;             ///< between two frames of the sender, by its own clock; > 0
+        std::int64_t delay_ns;              ///< jitter, and waiting for the bus; 0 … period
+        std::int64_t clock_tolerance = 128; ///< its period is shorter by at most this part of it
     };
 
     explicit constexpr SendRateGate(const Config& config) noexcept
-        : shortest_ns_(config.period_ns - config.period_ns / clock_tolerance), delay_ns_(config.delay_ns) {}
+        : shortest_ns_(config.period_ns - config.period_ns / config.clock_tolerance),
+          delay_ns_(config.delay_ns) {}
 
     /// Takes a frame and returns true if its sender cannot be that of the frame before. If so, the state
     /// restarts with this frame. Frames that share a stamp, or arrive out of order, are no evidence.
@@ -48,9 +50,6 @@ class SendRateGate {
     }
 
   private:
-    /// A sender's clock is fast by at most 1/128; the bit timing of CAN requires better clocks.
-    static constexpr std::int64_t clock_tolerance = 128;
-
     std::int64_t shortest_ns_;
     std::int64_t delay_ns_;
     std::int64_t sent_ns_ = 0; ///< earliest send time of the last frame

@@ -128,8 +128,10 @@ class MotionGate : private MotionEvidence {
         }
     }
 
-    /// Returns the last trusted position (rad); 0 before the first.
-    [[nodiscard]] constexpr double position_rad() const noexcept { return trusted_.last().position_rad; }
+    /// Returns the last trusted position (rad); none before the first.
+    [[nodiscard]] constexpr std::optional<double> position_rad() const noexcept {
+        return trusted_.empty() ? std::nullopt : std::optional(trusted_.last().position_rad);
+    }
 
     /// Returns the number of rejected readings.
     [[nodiscard]] constexpr std::uint64_t refusals() const noexcept { return refusals_; }
