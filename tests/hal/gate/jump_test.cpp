@@ -4,7 +4,6 @@
 #include "tests/support/seed.hpp"
 
 #include <cmath>
-
 #include <random>
 
 namespace jump_test {

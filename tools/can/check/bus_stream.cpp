@@ -90,7 +90,7 @@ void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns, bo
     if (!phase_known_ || periods > gap_periods) {
         next_ns_ = now_ns + period_ns;
         phase_known_ = true;
-        in_sequence_ = skipped_ = backlog_missed_ = false;
+        in_sequence_ = skipped_ = false;
         return;
     }
     const double skipped = std::round((now_ns - next_ns_) / period_ns);
@@ -103,16 +103,19 @@ void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns, bo
     off_sequence_ += off && !is_overtaken ? 1 : 0;
     in_sequence_ = !off && skipped == 0;
     phase_.take(stamp_ns, due_ns, period_ns);
-    skipped_ = backlog_missed_ = skipped > 0;
+    skipped_ = skipped > 0;
     next_ns_ = due_ns + phase_gain * (now_ns - due_ns) + period_ns;
 }
 
 bool BusStream::waited(std::int64_t stamp_ns, double period_ns) {
-    if (!phase_known_) {
-        backlog_ = hal::BacklogGate(static_cast<std::int64_t>(period_ns));
+    if (several) {
+        return false;
     }
-    const bool waits = backlog_.waited(stamp_ns) && !several;
-    missing_ -= waits && backlog_missed_ ? 1 : 0;
+    if (!phase_known_) {
+        backlog_.emplace(static_cast<std::int64_t>(period_ns));
+    }
+    const bool waits = backlog_->waited(stamp_ns);
+    missing_ -= waits && skipped_ ? 1 : 0; // counted as missing by the first frame after the pause
     return waits;
 }
 

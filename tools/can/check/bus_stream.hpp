@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -94,8 +95,7 @@ class BusStream {
     double next_ns_ = 0;       ///< expected time of the next frame in the sequence, relative to `last_ns`
     std::int64_t missing_ = 0; ///< minus the frames that arrived in addition to the sequence
     bool skipped_ = false;     ///< the last frame skipped a place in the sequence
-    hal::BacklogGate backlog_{1};
-    bool backlog_missed_ = false; ///< the frames that waited were counted as missing
+    std::optional<hal::BacklogGate> backlog_;
     double recent_additional_ = 0, largest_recent_ = 0;
     bool in_sequence_ = false;
     std::uint64_t off_sequence_ = 0;

@@ -66,8 +66,7 @@ class DisturbanceObserver {
     void restart() noexcept {
         watch_.restart();
         for (int k = 0; k < joints_; ++k) {
-            integral_[k] = estimate_[k] = bandwidth_[k] = momentum_[k] = change_[k] = 0;
-            feedback_[k] = feedback_change_[k] = 0;
+            integral_[k] = estimate_[k] = bandwidth_[k] = change_[k] = feedback_change_[k] = 0;
         }
     }
 

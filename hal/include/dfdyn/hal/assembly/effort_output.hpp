@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/assembly/joint_arrival.hpp"
 #include "dfdyn/hal/assembly/joint_count.hpp"
-#include "dfdyn/hal/assembly/position_track.hpp"
+#include "dfdyn/hal/assembly/track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
-#include "dfdyn/hal/gate/backlog.hpp"
 #include "dfdyn/hal/gate/frozen_effort.hpp"
 
 #include <algorithm>
@@ -45,11 +45,9 @@ class EffortOutput {
         const auto joint = static_cast<std::size_t>(value.joint);
         Reason reason = value.effort_reason;
         const bool later = track_[joint].is_later(value.stamp_ns);
-        const bool waited = later && rated_ && backlog_[joint].waited(value.stamp_ns);
-        if (waited) {
-            reason = reason == Reason::ok ? Reason::frame_waited : reason;
-        } else if (later && rated_ && collision_[joint].seen(rate_[joint].too_soon(value.stamp_ns))) {
-            reason = Reason::id_collision;
+        const Reason arrival = later ? arrival_[joint].take(value.stamp_ns) : Reason::ok;
+        if (reason == Reason::ok || arrival == Reason::id_collision) {
+            reason = arrival;
         }
         const bool known = later && position_rad && value.effort_reason == Reason::ok; // from any sender
         if (known && frozen_[joint].frozen(value.effort, *position_rad, value.stamp_ns) &&
@@ -122,19 +120,14 @@ class EffortOutput {
         : joints_(config.joints), track_{Track<1, capacity>(config.track, {config.range[i]},
                                                             output_reasons)...},
           frozen_{(static_cast<void>(i), FrozenEffortGate(config.frozen_limit, config.track.period_ns))...},
-          rate_{(static_cast<void>(i), joint_rate(config.track))...},
-          backlog_{(static_cast<void>(i), BacklogGate(config.track.period_ns))...},
-          rated_(config.track.period_ns > 0) {}
+          arrival_{(static_cast<void>(i), JointArrival(config.track.period_ns))...} {}
 
     [[nodiscard]] constexpr std::size_t used() const noexcept { return static_cast<std::size_t>(joints_); }
 
     [[no_unique_address]] Extent<n> joints_;
     PerJoint<Track<1, capacity>, n> track_;
     PerJoint<FrozenEffortGate, n> frozen_;
-    PerJoint<SendRateGate, n> rate_;
-    PerJoint<BacklogGate, n> backlog_;
-    bool rated_;
-    PerJoint<CollisionHold, n> collision_{};
+    PerJoint<JointArrival, n> arrival_;
 };
 
 } // namespace dfdyn::hal

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/assembly/joint_arrival.hpp"
 #include "dfdyn/hal/assembly/track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
-#include "dfdyn/hal/gate/backlog.hpp"
-#include "dfdyn/hal/gate/send_rate.hpp"
 #include "dfdyn/hal/motion/motion.hpp"
 #include "dfdyn/hal/motion/velocity_witness.hpp"
 
 namespace dfdyn::hal {
 
-/// Returns the rate gate of a joint's values. A frame may wait for the bus for a whole period, and the SYNC
-/// that it answers may be irregular by a period. The timer of a drive may be an RC oscillator.
-[[nodiscard]] constexpr SendRateGate joint_rate(const TrackConfig& config) noexcept {
-    return SendRateGate(SendRateGate::Config{config.period_ns, config.period_ns, 40});
-}
-
-/// The recent positions of one joint that come from one sender (SendRateGate), were read in time
-/// (BacklogGate), and agree with the joint's motion (MotionGate) and its velocity (VelocityWitness).
+/// The recent positions of one joint that come from one sender, were read in time (JointArrival), and agree
+/// with the joint's motion (MotionGate) and its velocity (VelocityWitness).
 template <int capacity>
 class PositionTrack {
   public:
@@ -26,8 +19,7 @@ class PositionTrack {
         : track_(without_qualification(config), {range}, position_reasons),
           motion_(
               {limits, range, config.max_age_ns, config.period_ns, config.jitter_ns, config.qualification}),
-          rate_(joint_rate(config)), backlog_(config.period_ns), rated_(config.period_ns > 0),
-          latency_ns_(config.latency_ns) {}
+          arrival_(config.period_ns), latency_ns_(config.latency_ns) {}
 
     /// Takes a device's value of this joint's position. Returns ok, or the reason of the rejection.
     constexpr Reason push(const JointValue& value) noexcept {
@@ -35,12 +27,7 @@ class PositionTrack {
             track_.push(value.stamp_ns, value.position_reason, {value.position_rad}, false);
             return Reason::time_not_increasing;
         }
-        const bool waited = rated_ && backlog_.waited(value.stamp_ns);
-        const bool collides = rated_ && !waited && collision_.seen(rate_.too_soon(value.stamp_ns));
-        if (collides) {
-            motion_.contradict();
-        }
-        const MotionGate::Verdict verdict = judge(value, waited, collides);
+        const MotionGate::Verdict verdict = judge(value, arrival_.take(value.stamp_ns));
         track_.push(value.stamp_ns, verdict.reason, {verdict.position_rad}, false);
         return verdict.reason;
     }
@@ -65,19 +52,25 @@ class PositionTrack {
     [[nodiscard]] constexpr const MotionGate& motion() const noexcept { return motion_; }
 
     /// Returns how many times a second sender was detected.
-    [[nodiscard]] constexpr std::uint64_t collisions() const noexcept { return collision_.count(); }
+    [[nodiscard]] constexpr std::uint64_t collisions() const noexcept { return arrival_.collisions(); }
 
   private:
-    constexpr MotionGate::Verdict judge(const JointValue& value, bool waited, bool collides) noexcept {
+    /// `arrival`: result of JointArrival.
+    constexpr MotionGate::Verdict judge(const JointValue& value, Reason arrival) noexcept {
         const EncoderReading reading = reading_of(value);
-        const bool has_position = value.position_reason == Reason::ok;
-        if (value.position_reason == Reason::sync_unknown || (has_position && waited)) {
-            motion_.glance(reading); // its time is unknown
-            return {has_position ? Reason::frame_waited : value.position_reason, value.position_rad};
+        const bool collides = arrival == Reason::id_collision;
+        if (collides) {
+            motion_.contradict();
         }
-        if (!has_position) {
+        const Reason reason =
+            value.position_reason == Reason::ok && !collides ? arrival : value.position_reason;
+        if (reason == Reason::sync_unknown || reason == Reason::frame_waited) {
+            motion_.glance(reading); // its time is unknown
+            return {reason, value.position_rad};
+        }
+        if (reason != Reason::ok) {
             motion_.interrupt(reading);
-            return {value.position_reason, value.position_rad};
+            return {reason, value.position_rad};
         }
         if (witness_.contradicts(value)) {
             motion_.interrupt(reading);
@@ -106,11 +99,8 @@ class PositionTrack {
     Track<1, capacity> track_;
     MotionGate motion_;
     VelocityWitness witness_;
-    SendRateGate rate_;
-    BacklogGate backlog_;
-    bool rated_;
+    JointArrival arrival_;
     std::int64_t latency_ns_;
-    CollisionHold collision_;
 };
 
 } // namespace dfdyn::hal

@@ -33,15 +33,17 @@ class VelocityWitness {
         if (!follows || turns || !add(value, apart_s)) {
             window_ = {};
         } else if (differs(value.step_rad)) {
-            contradicted_ = agreed_rad_ >= known_rad;
-            agreed_rad_ = contradicted_ ? known_rad : 0;
+            contradicted_ = is_known();
+            disagree();
             window_ = {};
         } else if (window_.travelled_rad >= enough_rad && agrees(value.step_rad)) {
             agreed_rad_ = std::min(agreed_rad_ + window_.travelled_rad, known_rad);
             contradicted_ = false;
             window_ = {};
         } else if (ends_undecided()) {
-            agreed_rad_ = agreed_rad_ < known_rad && !agrees(value.step_rad) ? 0 : agreed_rad_;
+            if (!agrees(value.step_rad)) {
+                disagree();
+            }
             window_ = {};
         }
         last_ = value;
@@ -81,6 +83,11 @@ class VelocityWitness {
         window_.fastest = std::max({window_.fastest, magnitude(value.velocity), magnitude(last_.velocity)});
         return magnitude(moved_rad - expected_rad) <= rounding_rad + 1.5 * slower * apart_s;
     }
+
+    /// Returns true if the velocity is evidence. It remains so.
+    [[nodiscard]] constexpr bool is_known() const noexcept { return agreed_rad_ >= known_rad; }
+
+    constexpr void disagree() noexcept { agreed_rad_ = is_known() ? agreed_rad_ : 0; }
 
     [[nodiscard]] constexpr bool rests() const noexcept {
         return window_.travelled_rad < rounding_rad / 2 && magnitude(window_.moved_rad) < rounding_rad / 2;
