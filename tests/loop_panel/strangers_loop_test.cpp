@@ -7,6 +7,7 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/control/commissioned_model.hpp"
 #include "tests/tools/simulation/faults/read_faults.hpp"
+#include "tools/control/loop/control_loop.hpp"
 
 #include <algorithm>
 #include <string>
@@ -83,11 +84,12 @@ TEST_CASE("links that the default observer makes vibrate on elastic gears are ca
         const StrangersLoop loop = draw_strangers_loop(seed, gear_hz).value();
         const LoopTrial trial = run_loop(loop, true, nullptr, 12);
         CHECK(trial.stop.empty());
-        CHECK(trial.late_step < 0.05);
         CHECK_THAT(trial.summary, ContainsSubstring("lowered the observer's bandwidth to "));
         CHECK(std::ranges::min(trial.bandwidth_share) < 1);
         const LoopTrial nominal = run_loop(loop, false, nullptr, 12);
         CHECK(trial.error < nominal.error);
+        // noise of the readings, also of coarse encoders, may add the observer's step
+        CHECK(trial.late_step < nominal.late_step + dfdyn::tools::ControlLoop::observer_step);
         CHECK_THAT(nominal.summary, !ContainsSubstring("bandwidth"));
         CHECK(std::ranges::min(nominal.bandwidth_share) == 1);
     }

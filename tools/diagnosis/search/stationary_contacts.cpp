@@ -106,6 +106,12 @@ class PulseFit {
                 product * product / (shape_.squaredNorm() * std::max(pulse.squaredNorm(), 1e-300))};
     }
 
+    /// Returns the variance of a height, per variance of a row of white noise.
+    double variance() const {
+        const double by_line = std::pow(shape_.sum() / shape_.squaredNorm(), 2);
+        return 1 / shape_.squaredNorm() + by_line / (2 * static_cast<double>(beside_));
+    }
+
   private:
     Eigen::Index beside_;
     Eigen::VectorXd shape_;
@@ -129,6 +135,32 @@ double usual_height(const std::vector<StandPulse>& pulses, std::size_t length) {
     }
     return median_to_deviation * median(std::move(heights));
 }
+
+/// Noise of a joint at rest, as a first-order autoregressive process: from the medians of its changes from
+/// row to row and over `2 apart` rows relative to a straight line, because its friction yields seldom and
+/// creeps.
+class StandNoise {
+  public:
+    void add(const Eigen::VectorXd& stand, Eigen::Index apart) {
+        for (Eigen::Index row = apart; row + apart < stand.size(); ++row) {
+            near_.push_back(std::abs(stand[row] - stand[row - 1]));
+            const double bend = stand[row - apart] - 2 * stand[row] + stand[row + apart];
+            far_.push_back(std::abs(bend) / std::numbers::sqrt3); // varies as a change does
+        }
+    }
+
+    /// Returns the variance of a row of white noise whose mean over many rows varies as much.
+    double variance() const {
+        constexpr double most_correlated = 0.99;
+        const double far = median(far_);
+        const double near = std::min(median(near_), far);
+        const double correlation = std::min(1 - std::pow(near / std::max(far, 1e-300), 2), most_correlated);
+        return std::pow(median_to_deviation * far, 2) / 2 * (1 + correlation) / (1 - correlation);
+    }
+
+  private:
+    std::vector<double> near_, far_;
+};
 
 /// Searches for contacts at one joint during its standstills.
 class JointStands {
@@ -183,6 +215,7 @@ class JointStands {
                 ++last;
             }
             add_pulses(first, last);
+            noise_.add(rest_.segment(first, last - first), fits_.front().beside() / 2);
             first = last;
         }
     }
@@ -211,6 +244,8 @@ class JointStands {
         contact.pulse = {pulse.start_s, pulse.end_s, push_flanks * (pulse.end_s - pulse.start_s)};
         contact.change = pulse.height;
         contact.change_deviation = usual_height(pulses_, pulse.length);
+        contact.noise = std::sqrt(2 * std::log(static_cast<double>(pulses_.size())) * noise_.variance() *
+                                  fits_[pulse.length].variance());
         contact.held = 2 * holding.most;
         contact.held_deviation = std::hypot(2 * std::sqrt(holding.variance), uncertain_share * rigid);
         return contact;
@@ -221,6 +256,7 @@ class JointStands {
     Eigen::VectorXd missed_, rest_;
     std::vector<PulseFit> fits_;
     std::vector<StandPulse> pulses_;
+    StandNoise noise_;
 };
 
 } // namespace
@@ -228,7 +264,7 @@ class JointStands {
 double StationaryContact::deviation() const { return std::hypot(change_deviation, held_deviation); }
 
 double StationaryContact::probability() const {
-    return std::erfc((held - std::abs(change)) / (deviation() * std::numbers::sqrt2)) / 2;
+    return std::erfc((held + noise - std::abs(change)) / (deviation() * std::numbers::sqrt2)) / 2;
 }
 
 std::vector<StationaryContact> stationary_contacts(const DiagnosisSignals& signals,

@@ -18,9 +18,11 @@ struct StationaryContact {
     /// Largest change that friction allows: from its maximum in one direction to its maximum in the other.
     /// The deviation includes the uncertainty of the rigid body's own change.
     double held = 0, held_deviation = 0;
+    /// Largest change that noise makes in as many windows as were searched (N·m).
+    double noise = 0;
     Eigen::VectorXd share; ///< T: contribution of the contact to the joint's output
 
-    /// Probability that friction alone cannot explain the change, from both uncertainties.
+    /// Probability that friction and noise cannot explain the change, from both uncertainties.
     double probability() const;
     double deviation() const; ///< of their difference
 };
@@ -30,8 +32,8 @@ struct StationaryContact {
 /// Static friction is undetermined, so that the regression excludes rows in which a joint is stationary and
 /// its output deviates from the rigid body (`joint_row_weight`, contained in `signals.measured.weight`). It
 /// is bounded, however: without a contact, the torque of a stationary joint changes by at most twice its dry
-/// friction, in addition to the influence of the moving links. The function returns the pulses that exceed
-/// this bound in two residuals: of the rigid body for `measured` (T x m), and after the fitted effects,
+/// friction, in addition to the influence of the moving links and to noise. The function returns the pulses that
+/// exceed this bound in two residuals: of the rigid body for `measured` (T x m), and after the fitted effects,
 /// `rest` (T x m). A cause identified during motion may be wrong during standstill.
 ///
 /// Limits:

@@ -22,6 +22,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double tie = 3; ///< log-odds of 20 to 1: causes with a smaller margin are indistinguishable
+constexpr double friction_error = 0.06;      ///< of a friction's evidence: error of its shape at reversals
 constexpr double price_of_shapes = 6;        ///< Occam factor of the three coefficients of a centre of mass
 constexpr std::size_t most_alternatives = 3; ///< of a finding
 constexpr std::size_t most_ties = 2;         ///< of a likely finding
@@ -29,13 +30,13 @@ constexpr std::size_t most_ties = 2;         ///< of a likely finding
 /// Returns the log-evidence below which another candidate is indistinguishable from the finding's own.
 /// Payload and last link, and friction and Coulomb friction, differ by less than their columns' errors.
 double least_margin(const Finding& finding, const Candidate& own, const Candidate& other) {
-    const double model_error = model_error_share * finding.margin_to_nothing;
+    const double evidence = finding.margin_to_nothing;
     if (!other.span.empty() && other.span == own.span) {
-        return std::max(tie + price_of_shapes, model_error);
+        return std::max(tie + price_of_shapes, model_error_share * evidence);
     }
     const bool same_friction =
         own.where == other.where && has_trait(own.effect, &Effect::friction) && is_coulomb(other);
-    return same_friction ? std::max(tie, model_error) : tie;
+    return same_friction ? std::max(tie, friction_error * evidence) : tie;
 }
 
 /// Determines the alternatives to a chosen effect, and their odds.

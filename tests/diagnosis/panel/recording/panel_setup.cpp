@@ -48,7 +48,7 @@ Scenario base_scenario(const PanelRobot& kind, const Robot& robot, double durati
     if (kind.outputs == OutputKind::wrench) {
         scenario.force_torque.emplace();
         scenario.force_torque->range << 500, 500, 500, 50, 50, 50;
-        scenario.force_torque->bits = 20;
+        scenario.force_torque->bits = kind.conditions.sensor_bits;
     }
     return scenario;
 }

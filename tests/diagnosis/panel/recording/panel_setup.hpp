@@ -16,6 +16,7 @@ inline constexpr double largest_mass_error = 0.1;
 struct PanelConditions {
     std::vector<double> rates_hz = {100, 125, 200, 250};
     int least_bits = 14, most_bits = 20;              ///< of an encoder, per turn
+    int sensor_bits = 20;                             ///< of an F/T sensor, for its whole range
     double least_noise = 0.01, largest_noise = 0.05;  ///< rms, per rms of the output
     double shortest_s = 40, longest_s = 60;           ///< durations
     double least_constant = 7, largest_constant = 14; ///< torque constants, N·m/A

@@ -169,6 +169,7 @@ PanelConditions unknown_conditions(Draw& draw) {
     PanelConditions conditions;
     conditions.rates_hz = {50, 100, 125, 200, 250, 500};
     conditions.least_bits = 12;
+    conditions.sensor_bits = 28; // its last link may weigh a hundredth of the sensor's payload
     conditions.largest_noise = draw.log_uniform(0.02, 0.15);
     conditions.least_noise = conditions.largest_noise / 5;
     conditions.shortest_s = 20;

@@ -86,6 +86,30 @@ TEST_CASE("a torque that friction can hold at rest is not a push") {
     CHECK(most_likely(5) > 0.9); // the same residual is a push if friction is five times smaller
 }
 
+TEST_CASE("the noise of a long standstill whose friction is small is not a push") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const DiagnosisSignals signals = standing_arm();
+    const FittedEffects fitted_effects =
+        fitted_effects_of({friction_cause(signals, "coulomb")}, 1, 0.5 * signals.direction(0));
+    for (const double kept : {0.0, 0.9}) { // of the noise, from one row to the next
+        int named = 0;
+        for (int draw = 0; draw < 20; ++draw) {
+            std::normal_distribution<double> noise(0, 5);
+            MatrixXd measured = signals.nominal;
+            double level = 0;
+            for (Index row = stand_first; row < stand_first + stand_rows; ++row) {
+                level = kept * level + noise(engine);
+                measured(row, 0) += level;
+            }
+            named +=
+                std::ranges::any_of(pushes_in(signals, fitted_effects, measured),
+                                    [](const StationaryContact& push) { return push.probability() > 0.9; });
+        }
+        CAPTURE(kept);
+        CHECK(named <= 1);
+    }
+}
+
 TEST_CASE("a push larger than friction is found at a joint at rest with its time and size") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = standing_arm();
