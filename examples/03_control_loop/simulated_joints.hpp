@@ -5,6 +5,7 @@
 #include "joint_controller.hpp"
 
 #include <cmath>
+#include <numbers>
 
 /// Simulates six joints with inertia, gravity and friction that differ from those of the training data, and
 /// provides a reference motion for them.
@@ -29,7 +30,10 @@ class SimulatedJoints {
     static JointController::Reference reference(std::int64_t tick) {
         JointController::Reference reference{};
         constexpr float rate = 2.5F; // rad/s
-        const float angle = rate * period_s * static_cast<float>(tick);
+        // reduced in double: a float loses the angle after an hour
+        const double turned =
+            static_cast<double>(rate) * 1e-9 * JointController::period_ns * static_cast<double>(tick);
+        const auto angle = static_cast<float>(std::remainder(turned, 2 * std::numbers::pi));
         float cosine = 1;
         float sine = 0;
         dfdyn::cos_sin(&angle, 1, 1.0F, &cosine, &sine);

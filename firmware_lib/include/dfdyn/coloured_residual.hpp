@@ -199,11 +199,12 @@ class ColouredResidual {
         return write_snapshot(*this, identity(), buffer);
     }
 
-    /// Restores the coefficients of an object with the same number of outputs, and restarts. A rejected
-    /// snapshot changes nothing.
+    /// Restores the coefficients of an object with the same number of outputs, of any memory, and restarts. A
+    /// rejected snapshot changes nothing.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         const SnapshotResult result = read_snapshot(*this, identity(), buffer);
         if (result == SnapshotResult::ok) {
+            samples_ = std::min(samples_, memory_);
             restart();
         }
         return result;
@@ -212,7 +213,7 @@ class ColouredResidual {
     /// Visits the contents of a snapshot.
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
-        visitor.ranged(self.samples_, Scalar(0), self.memory_);
+        visitor.ranged(self.samples_, Scalar(1), largest);
         for (auto& line : self.lines_) {
             LatticePredictor<Scalar>::visit_state(line.residual, visitor);
             LatticePredictor<Scalar>::visit_state(line.difference, visitor);

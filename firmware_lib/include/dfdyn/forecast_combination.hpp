@@ -203,6 +203,7 @@ class ForecastCombination {
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         const SnapshotResult result = read_snapshot(*this, identity(), buffer);
         if (result == SnapshotResult::ok) {
+            samples_ = std::min(samples_, memory_);
             trust_ = 1;
             skipped_ = 0;
             one_step_ = true;
@@ -215,7 +216,7 @@ class ForecastCombination {
     /// Visits the contents of a snapshot.
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
-        visitor.ranged(self.samples_, Scalar(0), self.memory_);
+        visitor.ranged(self.samples_, Scalar(0), largest);
         for (auto* const table : {&self.mean_square_, &self.mean_square_ahead_, &self.mean_variance_}) {
             for (auto& mean : *table) {
                 visitor.ranged(mean, least, largest);

@@ -219,7 +219,7 @@ TEST_CASE("vibrations lower a bandwidth for good, at most to its least share; no
     CHECK(off.share()[0] == 1);
 }
 
-TEST_CASE("NaN inputs do not change the estimate") {
+TEST_CASE("inputs that are not finite or too large do not change the estimate") {
     DisturbanceObserver<float, 2> observer({}, {0.001F, {{20, 20}}, {{5, 5}}, {{5, 5}}, {{5, 5}}});
     const float inertia[] = {1, 1};
     const float zero[] = {0, 0};
@@ -234,7 +234,13 @@ TEST_CASE("NaN inputs do not change the estimate") {
         CHECK(observer.estimate()[0] == before);
         observer.update(zero, inertia, broken, zero);
         CHECK(observer.estimate()[0] == before);
+        observer.update(push, inertia, zero, broken);
+        CHECK(observer.estimate()[0] == before);
     }
+    const float huge[] = {0.9F * std::numeric_limits<float>::max(), 0};
+    observer.update(zero, inertia, huge, zero); // the product with the bandwidth is infinite
+    observer.update(zero, inertia, huge, zero);
+    CHECK(observer.estimate()[0] == before);
     CHECK(observer.estimate()[1] > before);
     observer.restart();
     CHECK(observer.estimate()[0] == 0);

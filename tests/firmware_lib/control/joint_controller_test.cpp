@@ -143,4 +143,21 @@ TEST_CASE("a new controller restores the learned state of another one") {
     CHECK(again == snapshot);
 }
 
+TEST_CASE("the reference of the example is smooth for hours") {
+    for (const std::int64_t hours : {0, 1, 24, 1000}) {
+        JointController::Reference before = SimulatedJoints::reference(hours * 3'600'000);
+        float largest = 0, highest = 0;
+        for (std::int64_t tick = 1; tick <= 3000; ++tick) {
+            const JointController::Reference now = SimulatedJoints::reference(hours * 3'600'000 + tick);
+            const float step = now.position[5] - before.position[5];
+            largest = std::max(largest, std::abs(step - 0.001F * now.velocity[5]));
+            highest = std::max(highest, now.position[5]);
+            before = now;
+        }
+        CAPTURE(hours);
+        CHECK(highest > 0.8F);
+        CHECK(largest < 1e-5F);
+    }
+}
+
 } // namespace joint_controller_test

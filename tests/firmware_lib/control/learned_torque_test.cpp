@@ -87,6 +87,20 @@ TEMPLATE_TEST_CASE("the measured position does not change the prediction for the
     }
 }
 
+TEST_CASE(
+    "an input that differentiates positions predicts from the first call after the beginning of a motion") {
+    using Timed = TestModel<float, Standard<6>>;
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto constants = make_constants<Timed>(engine);
+    LearnedTorque<Timed> learned(constants, 1);
+    constexpr float rest[] = {0.3F, 0.4F};
+    float torque[2];
+    learned.begin(0, rest);
+    CHECK(learned.predict(0, rest, torque));
+    learned.begin(0, rest);
+    CHECK(learned.predict(period_ns, rest, torque));
+}
+
 TEST_CASE("a sample learned in slices changes the prediction when it is complete") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<Kernel>(engine);

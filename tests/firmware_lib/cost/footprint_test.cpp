@@ -75,12 +75,6 @@ TEMPLATE_TEST_CASE_SIG("the learner of SPK takes the bytes that it declares", ""
     CHECK(bytes <= state_bytes + 2 * most_beside_arrays); // contains a learner
 }
 
-TEST_CASE("the constants of a feature map take the bytes that it declares") {
-    check_bytes<RandomFourier<50>::Constants<float, 12>>(RandomFourier<50>::constant_bytes<float>(12, 50));
-    check_bytes<RandomFourier<250>::Constants<double, 18>>(
-        RandomFourier<250>::constant_bytes<double>(18, 250));
-}
-
 TEST_CASE("a physics map takes the bytes that it declares") {
     using Arm = Chain<6>;
     using Columns = Physics<DerivativeFreeReduced<20, 3>, 40, ViscousFriction<6>>;

@@ -239,6 +239,21 @@ TEST_CASE("a residual state continues from its snapshot and rejects any other") 
     CHECK(other.restore(bytes) == SnapshotResult::corrupted);
 }
 
+TEST_CASE("a residual state restores the snapshots of any memory, also before it has learned") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const std::array<float, 2> noise{1, 1};
+    State<float> learned = state<float>();
+    errors_of(learned, Samples(0.9), 500, engine);
+    State<float> shortest(Extent<2>{}, 1, noise.data());
+    for (const State<float>* const written : {&learned, &shortest}) {
+        std::vector<std::byte> bytes(written->snapshot_bytes());
+        REQUIRE(written->snapshot(bytes) == SnapshotResult::ok);
+        State<float> other(Extent<2>{}, 1, noise.data());
+        CHECK(other.restore(bytes) == SnapshotResult::ok);
+        CHECK(other.correlation(0) == written->correlation(0));
+    }
+}
+
 TEST_CASE("a residual state takes 60 bytes per output and no heap") {
     CHECK(sizeof(dfdyn::ColouredResidual<float, 6>) <= 6 * 60 + 64);
     State<float> learned = state<float>();

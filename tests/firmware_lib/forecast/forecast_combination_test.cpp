@@ -208,6 +208,7 @@ TEST_CASE("a combination continues from its snapshot and rejects any other") {
     for (int i = 0; i < members * outputs; ++i) {
         CHECK(other.weights()[i] == combined.weights()[i]);
     }
+    CHECK(combination<float>(10).restore(bytes) == SnapshotResult::ok); // a shorter memory
     std::vector<std::byte> fresh(bytes.size());
     REQUIRE(combination<float>(100).snapshot(fresh) == SnapshotResult::ok);
     REQUIRE(other.restore(fresh) == SnapshotResult::ok);

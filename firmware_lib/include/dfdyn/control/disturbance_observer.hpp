@@ -77,12 +77,14 @@ class DisturbanceObserver {
     ///  - `excess`: torque that the limits removed from the last command, N·m. An estimate does not grow
     ///    against a limit (anti-windup).
     ///
-    /// A NaN or infinite value leaves the estimate of its joint unchanged.
+    /// A NaN or infinite value, or a product of inertia and rate that could overflow, leaves the estimate of
+    /// its joint unchanged.
     const Torques& update(const Scalar* feedback, const Scalar* inertia, const Scalar* error_rate,
                           const Scalar* excess) noexcept {
         for (int k = 0; k < joints_; ++k) {
             const Scalar momentum = inertia[k] * error_rate[k];
-            if (!std::isfinite(momentum) || !std::isfinite(feedback[k])) {
+            const Scalar largest = 2 * (1 + settings_.bandwidth[k]) * momentum; // of all products below
+            if (!std::isfinite(largest) || !std::isfinite(feedback[k]) || !std::isfinite(excess[k])) {
                 watch_.pass(k);
                 continue;
             }

@@ -55,9 +55,9 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 ///
 ///     begin(now, position);                              // the arm rests at the reference's start
 ///     each control tick:
-///         torque = update(reference, nominal) + feedback + observer;  limited
+///         torque = update(reference, nominal) + feedback + observer;
 ///         observer_bandwidth_share(k, observer.share()[k]);      // of each joint
-///         commanded(torque);
+///         commanded(torque);                                     // unless a limit changed it
 ///         measured(time, position, torque that was in effect then);   // nullptr if unknown
 ///
 /// Learn from the command that was in effect when the position was read rather than from a torque sensor:
@@ -183,7 +183,8 @@ class FeedForward {
     /// Passes the newest measured position (n values, rad) and the torque that was in effect at that time (n
     /// values, N·m); nullptr if unknown. Call it in every tick, after `update`: a sample is taken at each
     /// knot, and learning continues between knots. `time_ns`: stamp of the measurement, by the clock of
-    /// `begin`; `SampleClock` documents the permitted jitter.
+    /// `begin`; `SampleClock` documents the permitted jitter. `position`: nullptr if there is no new one. At
+    /// a knot this loses a sample, and learning waits until the window of the measured motion is full again.
     void measured(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
         if (at_knot_ && position != nullptr) {
             learner_->learn(time_ns, position, torque);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 
 namespace dfdyn {
 
@@ -33,6 +34,9 @@ class LearnedTorque {
     static constexpr int forecasts = 1;            ///< torques of a joint that `predict` writes
     static_assert(Model::joints == Model::outputs, "outputs must be the torques of all joints");
     static_assert(Model::outputs != dynamic, "sizes must be fixed at compile time");
+    static_assert(
+        std::is_same_v<typename Model::Sample, dfdyn::Sample<Scalar, Model::joints, Model::outputs>>,
+        "the input must be positions: a reference's window has no measured derivatives");
 
     explicit LearnedTorque(const typename Model::Constants&&, int ticks) = delete;
 
@@ -53,8 +57,13 @@ class LearnedTorque {
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
         estimator_.restart_window();
         columns_.restart();
-        for (int lag = 0; lag < longest_window && !columns_.ready(); ++lag) {
+        int rows = 0;
+        for (; rows < longest_window && !columns_.ready(); ++rows) {
             push(time_ns, position);
+        }
+        columns_.restart();
+        for (int row = rows - 1; row >= 0; --row) { // inputs that differentiate need increasing times
+            push(time_ns - (row + 1) * constants_->period_ns, position);
         }
     }
 

@@ -15,8 +15,8 @@ enum class Reason : std::uint8_t {
     /// The lag window (the longer of features and physics) contains fewer than M+1 positions since the start,
     /// a gap or a clock restart. Remedy: wait M ticks.
     window_filling = 1,
-    /// The sample came later than the model's gap time: samples were lost, and the window restarts with this
-    /// sample. Remedy: find out why the bus or the scheduler lost them.
+    /// Samples were lost before this one (`SampleClock`; for a model without `period_ns`: it came later than
+    /// the gap time). The window restarts with it. Remedy: find out why the bus or the scheduler lost them.
     gap = 2,
     /// Time ran backward for several consecutive samples: the new clock is adopted and the window restarts.
     clock_restarted = 3,

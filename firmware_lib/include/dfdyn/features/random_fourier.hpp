@@ -53,12 +53,6 @@ struct RandomFourier {
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
         return frame_bytes + cos_sin_bytes<Scalar>;
     }
-
-    /// Returns the bytes of the constants; a feature map has no state.
-    template <class Scalar>
-    [[nodiscard]] static constexpr std::int64_t constant_bytes(int input_count, int feature_count) noexcept {
-        return storage_bytes<Scalar>(std::int64_t{input_count} * feature_count);
-    }
 };
 
 } // namespace dfdyn

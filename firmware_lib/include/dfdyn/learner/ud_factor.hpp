@@ -80,8 +80,6 @@ class UdFactor {
         return total;
     }
 
-    [[nodiscard]] bool sweeping() const noexcept { return sweep_ != Sweep::none; }
-
     /// Begins to fold in a row of p values, measured with this noise variance > 0; with `keep` the sweep
     /// computes its `alpha` and `gain` only, and the covariance stays.
     void begin(const Scalar* row, Scalar noise_variance, bool keep) noexcept {

@@ -59,8 +59,9 @@ class ContactDetector {
         }
     }
 
-    /// Adds the positions (rad), errors and predictions (the outputs' unit) at a stamp. Values that are not
-    /// finite, and stamps that do not increase, interrupt. Returns true during a contact.
+    /// Adds the positions (rad), errors and predictions (the outputs' unit) at a stamp. Returns true during a
+    /// contact. Values that are not finite interrupt. After a gap, or if the stamp does not increase, the
+    /// comparison starts anew with these values, and a contact ends.
     bool tick(std::int64_t time_ns, const Scalar* position, const Scalar* error,
               const Scalar* prediction) noexcept {
         const Scalar dt = static_cast<Scalar>(time_ns - time_ns_) * Scalar(1e-9);
@@ -101,7 +102,7 @@ class ContactDetector {
     /// Returns whether errors are compared: not after an interruption.
     [[nodiscard]] bool running() const noexcept { return running_; }
     /// Returns whether the last contact was accepted as a change of the arm, because it did not end.
-    [[nodiscard]] bool persistent() const noexcept { return lasted_s_ >= longest_s; }
+    [[nodiscard]] bool persistent() const noexcept { return persistent_; }
     /// Returns the number of joints.
     [[nodiscard]] int size() const noexcept { return count_; }
     /// Returns true during a contact, as the last `tick` did.
@@ -163,6 +164,7 @@ class ContactDetector {
                 joint_ = largest_;
                 lasted_s_ = quiet_s_ = 0;
                 peak_ = 0;
+                persistent_ = false;
             }
             return;
         }
@@ -190,6 +192,7 @@ class ContactDetector {
             joint.accept();
         }
         contact_ = false;
+        persistent_ = true;
     }
 
     [[no_unique_address]] Extent<joints> count_;
@@ -205,6 +208,7 @@ class ContactDetector {
     int joint_ = 0;
     bool running_ = false;
     bool contact_ = false;
+    bool persistent_ = false; ///< the last contact was accepted
 };
 
 } // namespace dfdyn
