@@ -115,6 +115,24 @@ TEST_CASE("a drive that does not answer a SYNC has no new value") {
                                            Reason::position_stale, Reason::position_stale});
 }
 
+TEST_CASE("a repeated frame of the joints does not complete a set") {
+    DFDYN_SEEDED_ENGINE(engine);
+    ArmOnBus arm(engine);
+    arm.warm_up();
+    std::array<Frame, 16> buffer{};
+    const Frame repeated = arm.frames_of(arm.number - 1).front();
+    for (const int expected : {0, 1}) {
+        std::vector<Frame> frames = arm.frames_of(arm.number);
+        frames.front() = expected == 0 ? repeated : frames.front();
+        arm.bus.waiting.insert(arm.bus.waiting.end(), frames.begin(), frames.end());
+        arm.bus.now = ArmOnBus::time_ns(arm.number) + 400 * us;
+        int sets = 0;
+        arm.assembly.drain(arm.bus, buffer, [&](const dfdyn::hal::SampleTrigger&) { ++sets; });
+        CHECK(sets == expected);
+        ++arm.number;
+    }
+}
+
 TEST_CASE("a set is complete when all joints and the wrench are new, at the wrench's time") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);

@@ -128,6 +128,26 @@ TEST_CASE(
     CHECK(worst_ns > 10'000);
 }
 
+TEST_CASE("one stamp of a controller's clock that is ahead does not shift the later ones") {
+    constexpr std::int64_t period_ns = 1'000'000, delay_ns = 20'000, ahead_ns = second_ns;
+    HardwareClock clock;
+    const auto age_of = [&](std::int64_t frame, std::int64_t error_ns) {
+        const std::int64_t read_ns = frame * period_ns + delay_ns;
+        return read_ns - clock.to_monotonic(frame * period_ns + error_ns, read_ns);
+    };
+    for (std::int64_t frame = 0; frame < 2000; ++frame) {
+        const std::int64_t age_ns = age_of(frame, frame == 1000 ? ahead_ns : 0);
+        REQUIRE(age_ns >= 0);
+        REQUIRE(age_ns < period_ns);
+    }
+    for (std::int64_t frame = 2000; frame < 2010; ++frame) { // now the clock is set
+        const std::int64_t age_ns = age_of(frame, ahead_ns);
+        REQUIRE(age_ns >= 0);
+        REQUIRE(age_ns < period_ns);
+    }
+    CHECK(age_of(2010, ahead_ns + 1000) == 0); // and its new difference is known
+}
+
 TEST_CASE("a restart of a controller's clock is detected") {
     HardwareClock clock;
     CHECK(clock.to_monotonic(500 * second_ns, 10 * second_ns) == 10 * second_ns);

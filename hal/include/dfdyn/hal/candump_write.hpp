@@ -71,7 +71,7 @@ constexpr void write_payload(const Frame& frame, CandumpWriter& out) noexcept {
 } // namespace detail
 
 /// Writes `frame` into `text` in the format of candump, without the line end. Frames of this host are marked
-/// by ` T`, others by ` R`. Returns an empty view for a frame that a log cannot represent:
+/// by ` T`, others have no mark. Returns an empty view for a frame that a log cannot represent:
 /// - it is not well-formed,
 /// - its time stamp is before 1970 or after 2262, or
 /// - the interface name is empty, longer than 15 characters or contains a blank.

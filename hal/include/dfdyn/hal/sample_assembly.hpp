@@ -239,7 +239,10 @@ class SampleAssembly {
         JointValue judged = value;
         if (value.position_reason != Reason::waiting_for_position) {
             const Reason reason = position_.push(value);
-            moments_.measured(joint);
+            if (reason !=
+                Reason::time_not_increasing) { // a repeated or overtaken frame is no new measurement
+                moments_.measured(joint);
+            }
             const bool other_source = reason == Reason::position_jump || reason == Reason::position_lost ||
                                       reason == Reason::position_frozen || reason == Reason::id_collision ||
                                       reason == Reason::velocity_contradicts;

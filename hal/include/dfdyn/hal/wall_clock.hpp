@@ -77,13 +77,18 @@ class WallClock {
 /// the monotonic clock. No frame is read before it is stamped, so the smallest observed delay from stamp to
 /// reading is the best estimate of the difference of the clocks. The estimate is relaxed by 1 /
 /// `drift_divisor` of the elapsed time so that it can follow the drift of the clocks. The remaining delay,
-/// the smallest one among the frames of the last seconds, is a constant offset.
+/// the smallest one among the frames of the last seconds, is a constant offset. A delay that is smaller by
+/// more than `fall_ns` is believed after `agreeing` frames in a row: one wrong stamp would shift all stamps
+/// for as long as the relaxation takes.
 class HardwareClock {
   public:
     /// An increase of the difference by more than this means that the clock was reset or wrapped.
     static constexpr std::int64_t reset_ns = 10'000'000'000;
     /// One part in 5,000 (200 ppm), because crystals agree to 100 ppm.
     static constexpr std::int64_t drift_divisor = 5'000;
+    /// Largest fall of the smallest delay that one frame can show.
+    static constexpr std::int64_t fall_ns = 2'000'000;
+    static constexpr int agreeing = 4; ///< frames in a row that show a larger fall
 
     /// Converts the controller's time stamp `stamp_ns`, read at `monotonic_ns`. The result is never later
     /// than `monotonic_ns`.
@@ -91,15 +96,19 @@ class HardwareClock {
         const std::int64_t difference_ns = monotonic_ns - stamp_ns;
         const std::int64_t relaxed_ns = offset_ns_ + (monotonic_ns - read_ns_) / drift_divisor;
         const bool reset = !started_ || difference_ns - relaxed_ns > reset_ns;
-        offset_ns_ = reset ? difference_ns : std::min(relaxed_ns, difference_ns);
+        falls_ = !reset && relaxed_ns - difference_ns > fall_ns ? falls_ + 1 : 0;
+        const bool doubtful = falls_ > 0 && falls_ < agreeing;
+        falls_ = doubtful ? falls_ : 0;
+        offset_ns_ = reset ? difference_ns : doubtful ? relaxed_ns : std::min(relaxed_ns, difference_ns);
         read_ns_ = monotonic_ns;
         started_ = true;
-        return stamp_ns + offset_ns_;
+        return std::min(stamp_ns + offset_ns_, monotonic_ns);
     }
 
   private:
     std::int64_t offset_ns_ = 0; ///< monotonic clock minus the controller's clock
     std::int64_t read_ns_ = 0;
+    int falls_ = 0; ///< in a row, below `agreeing`
     bool started_ = false;
 };
 

@@ -17,7 +17,7 @@ namespace dfdyn::hal {
 /// Schedule of the samples.
 struct SamplerConfig {
     bool timer = true;            ///< true: periodic; false: at the triggers of the arm
-    std::int64_t period_ns = 0;   ///< of the samples
+    std::int64_t period_ns = 1;   ///< of the samples, > 0
     std::int64_t delay_ns = 0;    ///< from the time of a periodic sample to its assembly
     std::int64_t patience_ns = 0; ///< without a trigger, before samples are periodic; at least the period
 };
@@ -47,7 +47,9 @@ class Sampler {
     static constexpr std::size_t most_strays = 3;
 
     explicit constexpr Sampler(const SamplerConfig& config) noexcept
-        : config_(config), delay_ns_(config.delay_ns) {}
+        : config_(config), delay_ns_(config.delay_ns) {
+        config_.period_ns = std::max<std::int64_t>(config_.period_ns, 1);
+    }
 
     /// Takes the next frame, with the state and the counters of its bus at that time.
     template <class OnSample>

@@ -46,8 +46,8 @@ inline constexpr TrackReasons output_reasons{Reason::waiting_for_output, Reason:
 ///
 /// A value that was due and has not come is missing. It is never replaced by the one before. There is no
 /// value until the next one comes; then it is interpolated if the two are at most `max_age` apart. If the
-/// next value is not due yet, the last one is held, at most for a period and the jitter. So a closed loop
-/// that requests the newest time gets a value without waiting.
+/// next value is not due yet, the last one is held, at most for nine eighths of a period and the jitter. So
+/// a closed loop that requests the newest time gets a value without waiting.
 template <int values, int capacity>
 class Track {
   public:
