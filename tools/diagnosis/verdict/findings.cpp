@@ -118,8 +118,9 @@ std::string held_words(const StationaryContact& push, bool prismatic) {
                unit_at_joint("N·m", prismatic);
     };
     return numbered("joint", push.joint) + " is stationary: its friction can change by " +
-           interval(push.held, push.held_deviation) + ", but its " + (prismatic ? "force" : "torque") +
-           " changes by " + interval(std::abs(push.change), push.change_deviation) + "; ";
+           interval(push.held, push.held_deviation) + ", noise by " + rounded_text(push.noise) +
+           ", but its " + (prismatic ? "force" : "torque") + " changes by " +
+           interval(std::abs(push.change), push.change_deviation) + "; ";
 }
 
 /// Returns the chosen named effects that reduce the error.

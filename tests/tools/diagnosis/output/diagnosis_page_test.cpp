@@ -85,6 +85,7 @@ TEST_CASE("a push at a joint at rest has the unit of the joint") {
         push.pulse = {8, 9, 0.2};
         push.change = 30;
         push.held = 10;
+        push.noise = 0.5;
         push.change_deviation = push.held_deviation = 1;
         push.share = 30 * pulse_series(signals, push.pulse);
         Eigen::MatrixXd rest = work.rest;
@@ -94,8 +95,9 @@ TEST_CASE("a push at a joint at rest has the unit of the joint") {
         const std::string& evidence = findings.front().evidence;
         CAPTURE(joint, evidence);
         CHECK_THAT(evidence,
-                   ContainsSubstring(joint == 2 ? "by 10 ± 1.96 N, but its force changes by 30"
-                                                : "by 10 ± 1.96 N·m, but its torque changes by 30"));
+                   ContainsSubstring(joint == 2
+                                         ? "by 10 ± 1.96 N, noise by 0.5, but its force changes by 30"
+                                         : "by 10 ± 1.96 N·m, noise by 0.5, but its torque changes by 30"));
     }
 }
 
