@@ -28,10 +28,11 @@ void copy_sizes(const TrainingOptions& from, TrainingOptions& to) {
 void SizeOptions::add_to(CLI::App& command) {
     const char* const group = "Budget";
     command
-        .add_option("--flash", flash_bytes,
-                    "Bytes of flash for code, constants and the start of learning. With --flash, --ram or "
-                    "--tick-operations the window, k, d and the memory are chosen by held-out error within "
-                    "the budget, unless other options give them")
+        .add_option(
+            "--flash", flash_bytes,
+            "Bytes of flash for code, constants and the start of learning. A command that trains chooses "
+            "window, k, d and memory by held-out error within --flash, --ram and --tick-operations, "
+            "unless other options give them")
         ->transform(byte_count())
         ->type_name("BYTES[K|M]")
         ->group(group);
