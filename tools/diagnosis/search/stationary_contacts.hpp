@@ -32,9 +32,9 @@ struct StationaryContact {
 /// Static friction is undetermined, so that the regression excludes rows in which a joint is stationary and
 /// its output deviates from the rigid body (`joint_row_weight`, contained in `signals.measured.weight`). It
 /// is bounded, however: without a contact, the torque of a stationary joint changes by at most twice its dry
-/// friction, in addition to the influence of the moving links and to noise. The function returns the pulses that
-/// exceed this bound in two residuals: of the rigid body for `measured` (T x m), and after the fitted effects,
-/// `rest` (T x m). A cause identified during motion may be wrong during standstill.
+/// friction, in addition to the influence of the moving links and to noise. The function returns the pulses
+/// that exceed this bound in two residuals: of the rigid body for `measured` (T x m), and after the fitted
+/// effects, `rest` (T x m). A cause identified during motion may be wrong during standstill.
 ///
 /// Limits:
 /// - A contact that persists is not detected, because static friction can leave a step, too.
