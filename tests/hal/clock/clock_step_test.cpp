@@ -41,6 +41,15 @@ TEST_CASE("a source that lost frames during a clock step still shows the step") 
     CHECK(*watch.step_ns(20 * period, 200 * us) == -1500 * us);
 }
 
+TEST_CASE("frames that are repeated with their stamps do not hide a clock step") {
+    Watch watch = after_step(1500 * us, {true, true, true});
+    for (int source = 0; source < 3; ++source) {
+        watch.take(source, 19 * period + source * 100 * us + 1500 * us, period, 100 * us);
+    }
+    REQUIRE(watch.step_ns(20 * period, 200 * us));
+    CHECK(*watch.step_ns(20 * period, 200 * us) == 1500 * us);
+}
+
 TEST_CASE("a single late or early source is no clock step") {
     CHECK_FALSE(after_step(1500 * us, {true, false, false}).step_ns(20 * period, 200 * us));
     CHECK_FALSE(after_step(1500 * us, {true, true, false}).step_ns(20 * period, 200 * us));

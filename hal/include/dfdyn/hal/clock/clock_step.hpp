@@ -16,13 +16,13 @@ template <int sources>
 class ClockStepWatch {
   public:
     /// Takes the stamp of a source that sends every `period_ns`, at most `jitter_ns` late. A source with the
-    /// period 0 is ignored.
+    /// period 0, and a frame that is repeated with its stamp, are ignored.
     constexpr void take(int source, std::int64_t stamp_ns, std::int64_t period_ns,
                         std::int64_t jitter_ns) noexcept {
-        if (period_ns <= 0) {
+        Source& mine = source_[static_cast<std::size_t>(source)];
+        if (period_ns <= 0 || (mine.heard && stamp_ns == mine.stamp_ns)) {
             return;
         }
-        Source& mine = source_[static_cast<std::size_t>(source)];
         const std::int64_t step_ns = stamp_ns - mine.stamp_ns - period_ns;
         if (mine.heard && distance(step_ns, 0) > jitter_ns) {
             mine.step_ns = step_ns;
