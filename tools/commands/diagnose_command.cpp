@@ -5,6 +5,7 @@
 #include "tools/base/system/progress.hpp"
 #include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/json_text.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
@@ -78,9 +79,15 @@ DiagnosisOptions diagnosis_options(const DiagnoseOptions& options, OutputKind ou
 
 /// Makes the model from the original recordings, with their gaps, instead of the joined one.
 std::optional<TrainedModel> make_model(const DiagnosisWork& work, const ModelExtension& extension,
-                                       const std::vector<Recording>& recordings) {
+                                       const std::vector<Recording>& recordings,
+                                       const DiagnoseOptions& options, const Robot& robot) {
+    if (!answered(work)) {
+        return std::nullopt;
+    }
     const Progress progress("building the extended model", 0);
-    return answered(work) ? std::optional(extended_model(extension, recordings)) : std::nullopt;
+    TrainedModel model = extended_model(extension, recordings);
+    describe_reading(options.recordings, robot, model);
+    return model;
 }
 
 /// Calls `use` with each wanted format of the corrected robot and its file.
@@ -103,12 +110,15 @@ void add_exports(const DiagnoseOptions& options, const ModelExtension& extension
     }
 }
 
-/// Removes the robots of an earlier run that this one does not replace, and model and curves if there are
-/// none now: they could be mistaken for results of this run.
+/// Removes the robots of an earlier run that this one does not replace, and model, header and curves if there
+/// are none now: they could be mistaken for results of this run.
 void remove_earlier(const DiagnoseOptions& options, bool has_model, FileSet& files) {
     if (!has_model) {
         files.remove(options.model());
         files.remove(options.curves());
+        if (!options.header.empty()) {
+            files.remove(options.header);
+        }
     }
     for (const RobotFormat& format : robot_formats()) {
         if (!has_model || std::ranges::find(options.formats, format.name) == options.formats.end()) {
@@ -160,12 +170,12 @@ int run(const DiagnoseOptions& options) {
     const DiagnosisWork work =
         diagnose_recordings(robot, recordings, diagnosis_options(options, outputs), !options.changed.empty());
     const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
-    const std::optional<TrainedModel> model = make_model(work, extension, recordings);
+    const std::optional<TrainedModel> model = make_model(work, extension, recordings, options, robot);
     const OnlineView online = model ? online_view(work, extension, *model, recordings) : OnlineView{};
     const nlohmann::ordered_json findings = diagnosis_json(work.diagnosis);
     FileSet files;
     files.add_folder(options.folder);
-    files.add(options.findings(), findings.dump(2) + '\n');
+    files.add(options.findings(), json_text(findings) + '\n');
     files.add(options.page(), diagnosis_page({robot, recordings, work, extension, online,
                                               options.curves().filename().string()}));
     if (answered(work)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/atomic_file.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/json_text.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
@@ -108,7 +109,7 @@ int run(const IdentifyOptions& options) {
         identify(robot, outputs, recorded, recordings.front().output.names, options.consistent);
     const nlohmann::ordered_json parameters = identification_json(robot, found);
     if (!options.parameters.empty()) {
-        write_file(options.parameters, parameters.dump(2) + '\n');
+        write_file(options.parameters, json_text(parameters) + '\n');
     }
     output.print(parameters);
     print_chain(robot);

@@ -6,6 +6,7 @@
 #include "tools/base/system/progress.hpp"
 #include "tools/base/system/read_file.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/json_text.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/options/json_output.hpp"
@@ -96,15 +97,20 @@ void show_tracking(const LoopParts& parts, const LoopOptions& options, const std
     }
 }
 
-/// Shows the findings of the learner's monitor on the terminal and in a file next to the tracking results.
-void show_changes(const LoopOptions& options, const ControlLoop& loop, FileSet& files) {
+/// Prints the findings of the learner's monitor in a run, and adds them to those of other runs.
+void show_changes(const std::string& run, const ControlLoop& loop, std::vector<RecordedChanges>& runs) {
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
-        const RecordedChanges changes = learned->changes();
-        print_changes(std::cout, changes);
-        if (!options.folder.empty()) {
-            files.add(options.folder / "changes.json",
-                      changes_json(std::span(&changes, 1), MonitorSetup().false_alarm_hours).dump(2) + '\n');
-        }
+        runs.push_back(learned->changes());
+        runs.back().recording = run;
+        print_changes(std::cout, runs.back());
+    }
+}
+
+/// Adds the findings in all runs as a file next to the tracking results.
+void add_changes(const LoopOptions& options, const std::vector<RecordedChanges>& runs, FileSet& files) {
+    if (!options.folder.empty() && !runs.empty()) {
+        files.add(options.folder / "changes.json",
+                  json_text(changes_json(runs, MonitorSetup().false_alarm_hours)) + '\n');
     }
 }
 
@@ -154,7 +160,8 @@ struct SimulatedRun {
 };
 
 SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options,
-                          const ComparedController& controller, FileSet& files) {
+                          const ComparedController& controller, FileSet& files,
+                          std::vector<RecordedChanges>& changes) {
     LoopLimits limits = options.limits;
     if (!controller.observer) {
         limits.observer_bandwidth = {0};
@@ -177,7 +184,7 @@ SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options,
     print_loop(std::cout, loop.loop());
     print_reactions(std::cout, loop.reactions());
     print_peaks(std::cout, peaks);
-    show_changes(options, loop.loop(), files);
+    show_changes(name, loop.loop(), changes);
     if (controller.name == compared_controllers(options).back().name) {
         save_learned(options, loop.loop(), files);
     }
@@ -196,8 +203,9 @@ int simulate(const LoopOptions& options) {
     nlohmann::ordered_json loops = nlohmann::ordered_json::array();
     bool stopped = false;
     FileSet files;
+    std::vector<RecordedChanges> changes;
     for (const ComparedController& controller : compared_controllers(options)) {
-        SimulatedRun run = simulate_run(parts, options, controller, files);
+        SimulatedRun run = simulate_run(parts, options, controller, files, changes);
         stopped = stopped || !run.tracking;
         if (run.tracking) {
             runs.push_back(*run.tracking);
@@ -206,6 +214,7 @@ int simulate(const LoopOptions& options) {
     }
     nlohmann::ordered_json figures = tracking_json(runs, stopped);
     figures["loops"] = std::move(loops);
+    add_changes(options, changes, files);
     if (!runs.empty()) {
         show_tracking(parts, options, runs, files);
     }
@@ -234,7 +243,9 @@ int run_on_bus(const LoopOptions& options) {
     FileSet files;
     save_learned(options, *loop, files);
     add_recording(options, name, log.recording, files);
-    show_changes(options, *loop, files);
+    std::vector<RecordedChanges> changes;
+    show_changes(name, *loop, changes);
+    add_changes(options, changes, files);
     const std::vector<TrackingRun> runs{{name, log.tracking.windows()}};
     const bool stopped = loop->cause() != StopCause::requested;
     nlohmann::ordered_json figures = tracking_json(runs, stopped);

@@ -3,11 +3,13 @@
 #include "tools/base/recording/sample_grid.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/json_text.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/clock_options.hpp"
 #include "tools/commands/options/json_output.hpp"
+#include "tools/commands/options/model_files.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/commands/options/setup_options.hpp"
@@ -127,7 +129,7 @@ void diagnose_robot(const Arm& arm, std::vector<Recording> training, const Start
     work.diagnosis.scope = "the first " + std::to_string(total_rows(training)) + " of " +
                            std::to_string(total_rows(arm.recordings)) + " rows";
     const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
-    files["diagnosis.json"] = diagnosis_json(work.diagnosis).dump(2) + '\n';
+    files["diagnosis.json"] = json_text(diagnosis_json(work.diagnosis)) + '\n';
     const std::string curves = "diagnosis_curves.csv";
     files["diagnosis.html"] = diagnosis_page({*arm.robot, training, work, extension, OnlineView{}, curves});
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
@@ -232,10 +234,8 @@ void describe_training(TrainedModel& model, const Arm& arm, const StartOptions& 
     for (const Recording& recording : arm.recordings) {
         record.recordings.push_back(std::filesystem::path(recording.source).filename().string());
     }
+    describe_reading(options.recordings, arm.robot, model);
     record.rows = "first 70 %";
-    record.columns = options.recordings.columns;
-    record.units = options.recordings.units;
-    record.joint_names = arm.robot ? names_of_joints(*arm.robot) : std::vector<std::string>{};
 }
 
 std::string next_steps(const StartOptions& options) {

@@ -136,15 +136,6 @@ std::string file_names(const std::vector<Recording>& recordings, TrainingRecord&
     return listed(record.recordings);
 }
 
-/// Records how the recordings were read, so that `replay` reads others in the same way.
-void describe_reading(const RecordingOptions& recordings, const std::optional<Robot>& robot,
-                      TrainingRecord& record) {
-    record.rows = recordings.rows;
-    record.columns = recordings.columns;
-    record.units = recordings.units;
-    record.joint_names = robot ? names_of_joints(*robot) : std::vector<std::string>{};
-}
-
 /// Shows the progress of the hyperparameter search, from any thread, then the computation of the initial
 /// state, until the callback is destroyed.
 ProgressCallback progress_line(HyperMethod hyper) {
@@ -270,7 +261,7 @@ int run(const TrainOptions& options) {
             : train_model(prepare_training(recordings, training), outputs, training, progress);
     TrainedModel& model = result.model;
     const std::string trained_on = file_names(recordings, model.training);
-    describe_reading(options.recordings, robot, model.training);
+    describe_reading(options.recordings, robot, model);
     {
         const Activity activity("calibrating the limits of innovations and contacts");
         calibrate_innovation_limit(model, recordings);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/replay/replay_report.hpp"
 
+#include "tools/base/text/number.hpp"
 #include "tools/build_flags.hpp"
 
-#include <array>
-#include <cstdio>
 #include <numeric>
 
 namespace dfdyn::tools {
@@ -25,6 +24,9 @@ void add_times(std::span<const ReplayedRecording> replayed, const ReplaySummary&
     double offset = 0;
     for (std::size_t i = 0; i < replayed.size(); ++i) {
         const std::vector<double>& time_s = replayed[i].time_s;
+        if (time_s.empty()) {
+            continue;
+        }
         report.recordings.push_back({offset, time_s.front(), summary.recordings[i].name});
         for (const Contradiction& contradiction : summary.recordings[i].contradictions) {
             report.intervals.push_back({offset + contradiction.start_s - time_s.front(),
@@ -76,21 +78,15 @@ ReportTable table_of(const RecordingFigures& figures, const ReplaySummary& summa
     return table;
 }
 
-std::string microseconds(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.1f µs", value);
-    return text.data();
-}
-
 std::vector<ReportFact> facts_of(const TrainedModel& model, const ReplaySummary& summary) {
     const auto trained_on = std::accumulate(
         model.training.recordings.begin(), model.training.recordings.end(), std::string(),
         [](const std::string& all, const std::string& one) { return all.empty() ? one : all + ", " + one; });
     return {{"Model", summary.model},
             {"Trained on", trained_on + ", rows " + model.training.rows},
-            {"Time per tick, median", microseconds(summary.median_us)},
-            {"Time per tick, 99 %", microseconds(summary.p99_us)},
-            {"Time per tick, longest", microseconds(summary.longest_us)},
+            {"Time per tick, median", formatted_or_dash("%.1f µs", summary.median_us)},
+            {"Time per tick, 99 %", formatted_or_dash("%.1f µs", summary.p99_us)},
+            {"Time per tick, longest", formatted_or_dash("%.1f µs", summary.longest_us)},
             {"Multiply-adds per tick", std::to_string(summary.operations)},
             {"Learned state", std::to_string(summary.state_bytes) + " bytes"},
             {"Build", build_flags()}};

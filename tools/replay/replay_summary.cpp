@@ -84,11 +84,6 @@ std::string reason_without_rigid_body(std::span<const TrainedModel> models,
                : "only CSV recordings are compared with it";
 }
 
-/// As `formatted`, with a dash for NaN.
-std::string formatted_or_dash(const char* format, double value) {
-    return std::isnan(value) ? "-" : formatted(format, value);
-}
-
 void print_line(std::ostream& out, const std::string& label, std::span<const std::string> cells) {
     out << "  " << label << std::string(label.size() < 26 ? 26 - label.size() : 1, ' ');
     for (const std::string& cell : cells) {
@@ -192,8 +187,9 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
         out << "rigid body: -: " << summary.no_rigid_body << '\n';
     }
     out << "time of a tick that " << (summary.learned ? "learns" : "predicts") << ", on this machine: median "
-        << formatted("%.1f", summary.median_us) << " us, 99 % " << formatted("%.1f", summary.p99_us)
-        << " us, longest " << formatted("%.1f", summary.longest_us) << " us (" << summary.operations
+        << formatted_or_dash("%.1f us", summary.median_us) << ", 99 % "
+        << formatted_or_dash("%.1f us", summary.p99_us) << ", longest "
+        << formatted_or_dash("%.1f us", summary.longest_us) << " (" << summary.operations
         << " multiply-adds)\n"
         << "learned state: " << summary.state_bytes << " bytes\n"
         << "build: " << build_flags() << '\n';

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <limits>
 #include <ostream>
 #include <span>
 #include <string>
@@ -38,8 +39,8 @@ struct ReplaySummary {
     /// multiply-adds per tick with learning, or per tick if there was no learning
     std::int64_t operations = 0;
     bool learned = false; ///< whether any tick had learning
-    /// of ticks with learning, or of those with a prediction if there was no learning
-    double median_us = 0, p99_us = 0, longest_us = 0;
+    /// of ticks with learning, or of those with a prediction if there was no learning; NaN: there are none
+    double median_us = std::numeric_limits<double>::quiet_NaN(), p99_us = median_us, longest_us = median_us;
 };
 
 /// Time after which the paper considers a model converged.

@@ -35,14 +35,18 @@ double held_out_error(const TrainedModel& model, std::span<const Recording> reco
     const auto estimator = make_estimator(model, false);
     const std::size_t outputs = model.outputs.names.size();
     double total = 0;
+    int known = 0; // an output that does not change has no error
     for (const Recording& recording : recordings) {
         const ReplayedRecording replayed = replay(*estimator, {&model, 1}, recording, 0, [](std::size_t) {});
         for (std::size_t k = 0; k < outputs; ++k) {
-            total += normalised_error(replayed, outputs, k, 0, replayed.time_s.size());
+            const double error = normalised_error(replayed, outputs, k, 0, replayed.time_s.size());
+            if (!std::isinf(error)) {
+                total += std::isnan(error) ? 1 : error; // without a prediction: as good as a constant
+                ++known;
+            }
         }
     }
-    const double error = total / static_cast<double>(outputs * recordings.size());
-    return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
+    return known > 0 ? total / known : std::numeric_limits<double>::infinity();
 }
 
 namespace {

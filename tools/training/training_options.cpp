@@ -79,9 +79,11 @@ void check_search(const TrainingOptions& options) {
     expect(options.refinement_evaluations >= 0, "at least 0 evaluations of the refinement",
            options.refinement_evaluations);
     expect(options.threads >= 1, "at least 1 thread", options.threads);
-    const double least = least_forgetting_factor(options.feature_count);
+    const bool features = options.model->features;
+    const double least = features ? least_forgetting_factor(options.feature_count) : 0.5;
     expect(options.forgetting_factor >= least && options.forgetting_factor <= 1,
-           "a forgetting factor from 1 - 1/(2 features) = " + std::to_string(least) + " to 1",
+           std::string("a forgetting factor from ") + (features ? "1 - 1/(2 features) = " : "") +
+               std::to_string(least) + " to 1",
            options.forgetting_factor);
 }
 

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 #include <string>
 
@@ -204,11 +205,31 @@ TEST_CASE("a recording in degrees is reported first and gets no model") {
     CHECK_THAT(file_content(folder + "/report.html"), ContainsSubstring("looks like degrees"));
     CHECK_FALSE(std::filesystem::exists(folder + "/extended_model.json"));
     // a header in the new folder, whose path is written in two ways, and one outside of it
+    const std::string earlier = directory.write("m.hpp", "of an earlier run");
     for (const std::string header : {"./new/m.hpp", "m.hpp"}) {
         const std::string outputs = " --outputs tau -o new --header " + header;
         CHECK(run_program(directory, "diagnose" + arm + "--log " + log + outputs, directory.path()).status ==
               1);
     }
+    CHECK_FALSE(std::filesystem::exists(earlier));
+}
+
+TEST_CASE("the extended model of a recording in degrees reads others in degrees") {
+    const TemporaryDirectory directory;
+    const std::string log = simulated(directory);
+    const std::string degrees = with_positions_times(180 / std::numbers::pi, log, directory);
+    const std::string folder = directory.path() / "out";
+    const Outcome outcome =
+        diagnose(directory, "--log " + degrees + " --units q=deg --outputs tau --no-held-out -o " + folder);
+    CAPTURE(outcome.error);
+    REQUIRE(outcome.status == 0);
+    const json training = json::parse(file_content(folder + "/extended_model.json"))["training"];
+    CHECK(training["units"] == "q=deg");
+    CHECK(training["joint_names"].size() == 2);
+    const Outcome replayed =
+        run_program(directory, "replay --model " + folder + "/extended_model.json --log " + degrees);
+    CAPTURE(replayed.out, replayed.error);
+    CHECK(replayed.status == 0);
 }
 
 TEST_CASE("currents with unknown torque constants in several recordings are diagnosed") {

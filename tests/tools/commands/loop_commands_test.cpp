@@ -80,6 +80,11 @@ TEST_CASE("a loop with a model trained on its own simulated recording tracks bet
         CHECK(std::filesystem::exists(bench.path("learned") + "/" + name));
     }
 
+    const auto changes = nlohmann::json::parse(file_content(bench.path("learned/changes.json")));
+    REQUIRE(changes["recordings"].size() == 2);
+    CHECK(changes["recordings"][0]["recording"] == "learned_alone");
+    CHECK(changes["recordings"][1]["recording"] == "learned");
+
     const std::string model = " --observer-bandwidth 0 --model " + bench.path("m.json");
     const std::string saved = bench.path("learned.bin");
     REQUIRE(bench.loop(simulate + bus + model + " --save " + saved).status == 0);

@@ -41,6 +41,15 @@ std::optional<std::string> refusal_with(const std::string& pointer, const nlohma
 
 } // namespace
 
+TEST_CASE("a model of a recording whose name is not UTF-8 reads back") {
+    DFDYN_SEEDED_ENGINE(engine);
+    TrainedModel model = small_model(engine, InputKind::DFR);
+    model.training.recordings = {"Pr\xfc"
+                                 "fung.csv"};
+    const TrainedModel read = model_from_json(model_to_json(model), "m.json");
+    CHECK(read.training.recordings == std::vector<std::string>{"Pr\uFFFDfung.csv"});
+}
+
 TEST_CASE("a model with physics of any structure reads back") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const char* structure : {"P", "SP", "SP2", "SPK"}) {

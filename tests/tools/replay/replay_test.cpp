@@ -8,6 +8,9 @@
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/replay/replay_csv.hpp"
+#include "tools/replay/replay_report.hpp"
+
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <sstream>
@@ -64,6 +67,21 @@ TEST_CASE("a replay predicts once the window is full and again after a gap and l
         CHECK(replayed.status[tick].learned() == !filling);
     }
     CHECK(replayed.horizon.size() == 2 * (96 - 3));
+}
+
+TEST_CASE("the report of a recording without ticks has neither curves nor times") {
+    std::mt19937_64 engine(1);
+    const TrainedModel model = small_model(engine, InputKind::DFR);
+    const auto estimator = make_estimator(model, true);
+    const std::vector<ReplayedRecording> replayed{replay_of(model, moving_arm(0), 0),
+                                                  replay_of(model, moving_arm(50), 0)};
+    const ReplaySummary summary = summarise({&model, 1}, *estimator, replayed, 0);
+    const Report report = make_replay_report(model, replayed, summary);
+    CHECK(report.recordings.size() == 1);
+    CHECK(report.time_s.size() == 50);
+    const ReplaySummary nothing = summarise({&model, 1}, *estimator, {replayed.data(), 1}, 0);
+    CHECK(make_replay_report(model, {replayed.data(), 1}, nothing).time_s.empty());
+    CHECK(replay_json(nothing)["tick_us"]["median"].dump() == "null");
 }
 
 TEST_CASE("a recording that does not fit the model is rejected") {

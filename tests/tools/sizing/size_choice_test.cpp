@@ -4,9 +4,11 @@
 #include "tests/support/catch.hpp"
 #include "tools/base/text/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <sstream>
+#include <vector>
 
 namespace size_choice_test {
 
@@ -60,6 +62,25 @@ TEST_CASE("the choice stays within the budget and a larger budget does not incre
             CHECK(choice.larger->needs.tick_operations > choice.chosen.needs.tick_operations);
         }
     }
+}
+
+TEST_CASE("an output that does not change in one of the recordings leaves the error of the others") {
+    const std::vector<Recording> recordings{swinging(1500, 0.01), swinging(300, 0.01)};
+    ModelTraining training;
+    training.options.likelihood_rows = 80;
+    training.options.evaluations_per_start = 30;
+    training.options.feature_count = 16;
+    const TrainedModel model = train_model(prepare_training({recordings.data(), 1}, training),
+                                           OutputKind::joint_torque, training, {})
+                                   .model;
+    std::vector<Recording> judged = recordings;
+    const double alone = held_out_error(model, {judged.data(), 1});
+    REQUIRE(alone > 0);
+    REQUIRE(alone < 0.5);
+    std::ranges::fill(judged[1].output.values, 2.5);
+    CHECK(held_out_error(model, judged) == Approx(alone));
+    judged[1] = swinging(2, 0.01); // too short for a prediction: as good as a constant
+    CHECK(held_out_error(model, judged) == Approx((alone + 1) / 2));
 }
 
 TEST_CASE("equal data give equal choices") {

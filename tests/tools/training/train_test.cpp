@@ -340,6 +340,9 @@ TEST_CASE("training rejects options out of range") {
               "training options: expected a forgetting factor from 1 - 1/(2 features) "
               "= 0.983333 to 1, found " +
                   tools::number_text(options.forgetting_factor));
+        options.forgetting_factor = 0.98;
+        options.model = &tools::structure("P"); // it has no features
+        CHECK_THAT(message(data, options), !Catch::Matchers::ContainsSubstring("forgetting"));
     }
 }
 

@@ -38,6 +38,10 @@ std::string formatted(const char* format, double value) {
     return text.data();
 }
 
+std::string formatted_or_dash(const char* format, double value) {
+    return std::isnan(value) ? "-" : formatted(format, value);
+}
+
 std::string rounded_text(double value) { return formatted("%.3g", value); }
 
 std::string percent(double share) { return rounded_text(100 * share) + " %"; }

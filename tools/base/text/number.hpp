@@ -25,6 +25,9 @@ std::string number_text(double value);
 /// Returns `value` formatted by printf with `format`, up to 63 characters.
 [[gnu::format(printf, 1, 0)]] std::string formatted(const char* format, double value);
 
+/// Does the same; a dash for NaN.
+[[gnu::format(printf, 1, 0)]] std::string formatted_or_dash(const char* format, double value);
+
 /// Formats with three significant digits: `0.0123`, `8.02`, `1.2e+04`.
 std::string rounded_text(double value);
 

@@ -2,6 +2,7 @@
 #include "tools/commands/options/contact_options.hpp"
 
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/json_text.hpp"
 #include "tools/commands/options/value_checks.hpp"
 #include "tools/replay/contacts/contact_estimator.hpp"
 
@@ -46,7 +47,7 @@ void ContactOptions::show(std::span<const RecordedContacts> contacts,
 void ContactOptions::add_file(std::span<const RecordedContacts> contacts,
                               std::span<const std::string> outputs, FileSet& files) const {
     if (!file.empty()) {
-        files.add(file, contacts_json(contacts, outputs).dump(2) + '\n');
+        files.add(file, json_text(contacts_json(contacts, outputs)) + '\n');
     }
 }
 

@@ -2,6 +2,7 @@
 #include "tools/commands/options/json_output.hpp"
 
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/json_text.hpp"
 
 #include <cerrno>
 #include <iostream>
@@ -34,8 +35,7 @@ JsonOutput::~JsonOutput() {
 void JsonOutput::print(const nlohmann::ordered_json& figures) const {
     if (output_ != nullptr) {
         std::ostream output(output_);
-        // names of files may have any bytes
-        output << figures.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+        output << json_text(figures) << '\n';
         flush_standard_output(output);
     }
 }

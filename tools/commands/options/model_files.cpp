@@ -6,6 +6,7 @@
 #include "tools/model/header/model_header.hpp"
 
 #include <string>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -17,6 +18,15 @@ void add_model(FileSet& files, const TrainedModel& model, const std::filesystem:
     if (!header.empty()) {
         files.add(header, model_to_header(model, to_identifier(header.stem().string())));
     }
+}
+
+void describe_reading(const RecordingOptions& recordings, const std::optional<Robot>& robot,
+                      TrainedModel& model) {
+    TrainingRecord& record = model.training;
+    record.rows = recordings.rows;
+    record.columns = recordings.columns;
+    record.units = recordings.units;
+    record.joint_names = robot ? names_of_joints(*robot) : std::vector<std::string>{};
 }
 
 } // namespace dfdyn::tools

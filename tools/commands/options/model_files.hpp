@@ -2,9 +2,12 @@
 #pragma once
 
 #include "tools/base/system/file_set.hpp"
+#include "tools/commands/options/options.hpp"
 #include "tools/model/model.hpp"
+#include "tools/robot/robot.hpp"
 
 #include <filesystem>
+#include <optional>
 
 namespace dfdyn::tools {
 
@@ -12,5 +15,9 @@ namespace dfdyn::tools {
 /// Throws InputError if `replay` would reject the model.
 void add_model(FileSet& files, const TrainedModel& model, const std::filesystem::path& json,
                const std::filesystem::path& header);
+
+/// Records in a model how the recordings were read that made it: `replay` reads others in the same way.
+void describe_reading(const RecordingOptions& recordings, const std::optional<Robot>& robot,
+                      TrainedModel& model);
 
 } // namespace dfdyn::tools

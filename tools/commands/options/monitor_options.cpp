@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/options/monitor_options.hpp"
 
+#include "tools/base/text/json_text.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/value_checks.hpp"
 
@@ -57,7 +58,7 @@ void MonitorOptions::show(std::span<const RecordedChanges> changes) const {
 
 void MonitorOptions::add_file(std::span<const RecordedChanges> changes, FileSet& files) const {
     if (!file.empty()) {
-        files.add(file, json(changes).dump(2) + '\n');
+        files.add(file, json_text(json(changes)) + '\n');
     }
 }
 

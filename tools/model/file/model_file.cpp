@@ -6,6 +6,7 @@
 #include "tools/base/system/read_file.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/json_reader.hpp"
+#include "tools/base/text/json_text.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/model/file/model_json.hpp"
@@ -279,7 +280,7 @@ TrainedModel read_fields(const JsonReader& reader) {
 
 double least_forgetting_factor(int feature_count) { return 1 - 1 / (2.0 * feature_count); }
 
-std::string model_to_json(const TrainedModel& model) { return model_json(model).dump() + "\n"; }
+std::string model_to_json(const TrainedModel& model) { return json_text(model_json(model), -1) + "\n"; }
 
 TrainedModel model_from_json(const std::string& text, const std::string& source) {
     const nlohmann::json json = parse_json(text, source);

@@ -192,4 +192,12 @@ TEST_CASE("several recordings must have the same columns") {
     CHECK_THROWS_MATCHES(
         read_both(one, four), InputError,
         Catch::Matchers::Message(four + ": expected the columns of " + one + ", none, found qdd1, qdd2"));
+    const std::string torques = directory.write("5.csv", "t,q1,q2,tau1,tau2\n0,1,1,1,1\n");
+    const std::string currents = directory.write("6.csv", "t,q1,q2,i1,i2\n0,1,1,1,1\n");
+    CHECK_THROWS_MATCHES(
+        read_recordings(std::vector<std::filesystem::path>{torques, currents},
+                        {.output_choices = {OutputKind::joint_torque, OutputKind::motor_current}}),
+        InputError,
+        Catch::Matchers::Message(currents + ": expected the columns of " + torques +
+                                 ", tau1, tau2, found i1, i2"));
 }

@@ -279,6 +279,9 @@ std::vector<Recording> read_recordings(std::span<const std::filesystem::path> pa
         require_same(first.position, last.position, first, last);
         require_same(first.velocity, last.velocity, first, last);
         require_same(first.acceleration, last.acceleration, first, last);
+        if (first.output.present() && last.output.present()) {
+            require_same(first.output, last.output, first, last);
+        }
     }
     return recordings;
 }

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace dfdyn::tools {
+
+/// Returns the text of `json` with this indentation (-1: one line). Bytes that are not UTF-8, which names of
+/// files may have, become U+FFFD.
+inline std::string json_text(const nlohmann::ordered_json& json, int indent = 2) {
+    return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+} // namespace dfdyn::tools
