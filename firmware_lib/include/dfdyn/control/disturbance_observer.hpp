@@ -34,7 +34,7 @@ namespace dfdyn {
 /// finds that the torque of feedback and observer does so, the joint's bandwidth is halved, for good, down to
 /// `least_share`. Pass `share()` to `FeedForward::observer_bandwidth_share`.
 ///
-/// If the joint is blocked, the estimate rises to its limit. Cost: 21 multiply-adds per joint and tick, 3
+/// If the joint is blocked, the estimate rises to its limit. Cost: 23 multiply-adds per joint and tick, 3
 /// more at a turn; 19 n + 2 scalars. Never allocates.
 template <class Scalar, int n>
 class DisturbanceObserver {
@@ -123,7 +123,7 @@ class DisturbanceObserver {
 
     /// Returns the largest number of multiply-adds of `update`.
     [[nodiscard]] static constexpr std::int64_t cost(Extent<n> joint_count) noexcept {
-        return std::int64_t{24} * joint_count;
+        return std::int64_t{26} * joint_count;
     }
 
   private:

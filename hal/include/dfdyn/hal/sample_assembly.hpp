@@ -239,8 +239,7 @@ class SampleAssembly {
         JointValue judged = value;
         if (value.position_reason != Reason::waiting_for_position) {
             const Reason reason = position_.push(value);
-            if (reason !=
-                Reason::time_not_increasing) { // a repeated or overtaken frame is no new measurement
+            if (reason != Reason::time_not_increasing) { // the frame is not a repeated or overtaken one
                 moments_.measured(joint);
             }
             const bool other_source = reason == Reason::position_jump || reason == Reason::position_lost ||

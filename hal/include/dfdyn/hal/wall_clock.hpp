@@ -96,10 +96,13 @@ class HardwareClock {
         const std::int64_t difference_ns = monotonic_ns - stamp_ns;
         const std::int64_t relaxed_ns = offset_ns_ + (monotonic_ns - read_ns_) / drift_divisor;
         const bool reset = !started_ || difference_ns - relaxed_ns > reset_ns;
-        falls_ = !reset && relaxed_ns - difference_ns > fall_ns ? falls_ + 1 : 0;
-        const bool doubtful = falls_ > 0 && falls_ < agreeing;
-        falls_ = doubtful ? falls_ : 0;
-        offset_ns_ = reset ? difference_ns : doubtful ? relaxed_ns : std::min(relaxed_ns, difference_ns);
+        falls_ = relaxed_ns - difference_ns > fall_ns ? falls_ + 1 : 0;
+        if (reset || falls_ == agreeing) {
+            offset_ns_ = difference_ns;
+            falls_ = 0;
+        } else {
+            offset_ns_ = falls_ > 0 ? relaxed_ns : std::min(relaxed_ns, difference_ns);
+        }
         read_ns_ = monotonic_ns;
         started_ = true;
         return std::min(stamp_ns + offset_ns_, monotonic_ns);
