@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/file_set.hpp"
+#include "tools/base/text/json_text.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/memory_table.hpp"
 #include "tools/report/chart.hpp"
@@ -145,7 +146,7 @@ void write_bench(const std::filesystem::path& folder, const BenchResults& result
     const FigurePage page = bench_page(results);
     FileSet files;
     files.add_folder(folder / "pictures");
-    files.add(folder / "bench.json", bench_json(results).dump(2) + '\n');
+    files.add(folder / "bench.json", json_text(bench_json(results)) + '\n');
     files.add(folder / "bench.md", figure_page_markdown(page));
     for (const PageSection& section : page.sections) {
         for (const PageChart& chart : section.charts) {

@@ -3,6 +3,7 @@
 #include "dfdyn/hal/socketcan_bus.hpp"
 #include "tools/base/system/atomic_file.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/json_text.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/can/check/bus_check.hpp"
 #include "tools/can/families/device_page.hpp"
@@ -75,7 +76,7 @@ void write_draft(const std::filesystem::path& path, const RecognisedBus& recogni
     if (!recognised.draft) {
         throw InputError("buscheck: no draft for -o: " + recognised.draft_error);
     }
-    write_file(path, recognised.draft->dump(2) + "\n");
+    write_file(path, json_text(*recognised.draft) + "\n");
     std::cout << "  draft written to " << shown(path) << '\n';
 }
 

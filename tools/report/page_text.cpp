@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/page_text.hpp"
 
+#include "tools/base/text/json_text.hpp"
 #include "tools/report/report_assets.hpp"
 
 #include <nlohmann/json.hpp>
@@ -79,7 +80,7 @@ std::string escape_markdown(std::string_view text) {
 }
 
 std::string script_json(const nlohmann::json& data) {
-    std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    std::string text = json_text(data, -1);
     replace_all(text, '&', "\\u0026");
     replace_all(text, '<', "\\u003c");
     replace_all(text, '>', "\\u003e");

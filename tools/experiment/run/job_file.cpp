@@ -2,6 +2,7 @@
 #include "tools/experiment/run/job_file.hpp"
 
 #include "tools/base/system/atomic_file.hpp"
+#include "tools/base/text/json_text.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/experiment/plan/file_checksum.hpp"
 #include "tools/model/file/model_file.hpp"
@@ -91,7 +92,7 @@ ordered_json job_inputs(const Plan& plan, const PlanData& data, const Case& one,
 JobResult write_job(const std::filesystem::path& path, const ordered_json& inputs, const JobResult& result) {
     make_folder(path.parent_path());
     const ordered_json json{{"schema", job_schema}, {"inputs", inputs}, {"result", job_to_json(result)}};
-    write_file(path, json.dump() + "\n");
+    write_file(path, json_text(json, -1) + "\n");
     return unit_from_json(json.at("result"));
 }
 

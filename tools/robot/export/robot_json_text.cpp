@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/text/json_text.hpp"
 #include "tools/robot/export/robot_export.hpp"
 
 #include <nlohmann/json.hpp>
@@ -51,7 +52,7 @@ std::string robot_json_text(const RobotExport& exported) {
                                       {"joints", std::move(joints)},
                                       {"tip_placement", frame(robot.tip_placement)},
                                       {"left_out", exported.left_out}};
-    return json.dump(2) + '\n';
+    return json_text(json) + '\n';
 }
 
 } // namespace dfdyn::tools
