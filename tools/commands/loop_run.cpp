@@ -100,8 +100,7 @@ void show_tracking(const LoopParts& parts, const LoopOptions& options, const std
 /// Prints the findings of the learner's monitor in a run, and adds them to those of other runs.
 void show_changes(const std::string& run, const ControlLoop& loop, std::vector<RecordedChanges>& runs) {
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
-        runs.push_back(learned->changes());
-        runs.back().recording = run;
+        runs.push_back(learned->changes(run));
         print_changes(std::cout, runs.back());
     }
 }

@@ -229,13 +229,9 @@ void replay_held_out(const TrainedModel& model, const SplitRecordings& split, Fo
 
 /// Describes the training in the model, so that `replay` reads recordings in the same way.
 void describe_training(TrainedModel& model, const Arm& arm, const StartOptions& options) {
-    TrainingRecord& record = model.training;
-    record.recordings.clear();
-    for (const Recording& recording : arm.recordings) {
-        record.recordings.push_back(std::filesystem::path(recording.source).filename().string());
-    }
+    model.training.recordings = file_names(arm.recordings);
     describe_reading(options.recordings, arm.robot, model);
-    record.rows = "first 70 %";
+    model.training.rows = "first 70 %";
 }
 
 std::string next_steps(const StartOptions& options) {

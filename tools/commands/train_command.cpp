@@ -129,13 +129,6 @@ void add_training_options(CLI::App& command, TrainingOptions& training) {
         ->capture_default_str();
 }
 
-std::string file_names(const std::vector<Recording>& recordings, TrainingRecord& record) {
-    for (const Recording& recording : recordings) {
-        record.recordings.push_back(std::filesystem::path(recording.source).filename().string());
-    }
-    return listed(record.recordings);
-}
-
 /// Shows the progress of the hyperparameter search, from any thread, then the computation of the initial
 /// state, until the callback is destroyed.
 ProgressCallback progress_line(HyperMethod hyper) {
@@ -260,7 +253,7 @@ int run(const TrainOptions& options) {
             ? train_within(options.sizes, free_sizes(options), recordings, outputs, training, progress)
             : train_model(prepare_training(recordings, training), outputs, training, progress);
     TrainedModel& model = result.model;
-    const std::string trained_on = file_names(recordings, model.training);
+    model.training.recordings = file_names(recordings);
     describe_reading(options.recordings, robot, model);
     {
         const Activity activity("calibrating the limits of innovations and contacts");
@@ -274,7 +267,7 @@ int run(const TrainOptions& options) {
     add_model(files, model, options.model, options.header);
     files.commit();
     output.print(outcome_json(result, find_target(options.sizes.target)));
-    print_outcome(result, trained_on);
+    print_outcome(result, listed(model.training.recordings));
     std::cout << describe_clock(training.options, period_s) << '\n';
     print_footprint(std::cout, model, find_target(options.sizes.target));
     return 0;

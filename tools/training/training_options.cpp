@@ -79,6 +79,7 @@ void check_search(const TrainingOptions& options) {
     expect(options.refinement_evaluations >= 0, "at least 0 evaluations of the refinement",
            options.refinement_evaluations);
     expect(options.threads >= 1, "at least 1 thread", options.threads);
+    // without features, the number of the physics' parameters decides, which is not known yet
     const bool features = options.model->features;
     const double least = features ? least_forgetting_factor(options.feature_count) : 0.5;
     expect(options.forgetting_factor >= least && options.forgetting_factor <= 1,

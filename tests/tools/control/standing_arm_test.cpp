@@ -70,7 +70,7 @@ std::vector<std::string> reports(LoopArm arm, const LoopModel& model, double sta
     loop.run_to(duration_s, [](const ClosedLoopInstant&) {});
     CHECK(loop.loop().state() == LoopState::running);
     std::stringstream text;
-    print_changes(text, loop.loop().feed_forward().learned()->changes());
+    print_changes(text, loop.loop().feed_forward().learned()->changes("learned"));
     std::vector<std::string> lines;
     for (std::string line; std::getline(text, line);) {
         lines.push_back(line);

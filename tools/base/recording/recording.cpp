@@ -4,6 +4,7 @@
 #include "tools/base/text/text.hpp"
 
 #include <charconv>
+#include <filesystem>
 #include <system_error>
 
 namespace dfdyn::tools {
@@ -92,6 +93,14 @@ std::string describe(const SkippedRows& skipped) {
     append_count(reasons, skipped.time_not_increasing, "time not increasing");
     return std::to_string(skipped.total()) + (skipped.total() == 1 ? " row skipped" : " rows skipped") +
            reasons;
+}
+
+std::vector<std::string> file_names(std::span<const Recording> recordings) {
+    std::vector<std::string> names;
+    for (const Recording& recording : recordings) {
+        names.push_back(std::filesystem::path(recording.source).filename().string());
+    }
+    return names;
 }
 
 } // namespace dfdyn::tools

@@ -133,8 +133,11 @@ struct ReadOptions {
 Recording read_recording(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads several recordings in order; `options.rows` applies to each. Throws InputError as above, and if
-/// their position, velocity, acceleration and output columns differ.
+/// their position, velocity, acceleration and output columns differ. A recording may have no outputs.
 std::vector<Recording> read_recordings(std::span<const std::filesystem::path> paths,
                                        const ReadOptions& options);
+
+/// Returns the names of the recordings' files, without folders.
+std::vector<std::string> file_names(std::span<const Recording> recordings);
 
 } // namespace dfdyn::tools

@@ -130,8 +130,8 @@ void LearnedFeedForward::learn(std::int64_t time_ns, const double* position, con
     }
 }
 
-RecordedChanges LearnedFeedForward::changes() const {
-    RecordedChanges recorded{"learned", -1e-9 * static_cast<double>(begin_ns_), {}};
+RecordedChanges LearnedFeedForward::changes(const std::string& run) const {
+    RecordedChanges recorded{run, -1e-9 * static_cast<double>(begin_ns_), {}};
     if (monitor_ != nullptr) {
         recorded.changes = monitor_->changes();
     }

@@ -100,8 +100,8 @@ class LearnedFeedForward {
     }
     /// Resets the covariance after a change of the arm: see RuntimeEstimator::relearn.
     void relearn() { learners_.front().estimator->relearn(); }
-    /// Returns the monitor's findings so far, with times since `begin`.
-    RecordedChanges changes() const;
+    /// Returns the monitor's findings so far, with times since `begin`, as those of the recording `run`.
+    RecordedChanges changes(const std::string& run) const;
 
   private:
     /// An estimator that learns in slices, and its follower.

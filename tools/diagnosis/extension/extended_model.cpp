@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 namespace dfdyn::tools {
@@ -217,9 +216,7 @@ TrainedModel extended_model(const ModelExtension& extension, std::span<const Rec
                      to_vector(VectorXd(noise.cwiseMax(1e-6)))};
     model.limits = limits_of(data);
     model.training.method = "diagnosis";
-    for (const Recording& recording : recordings) {
-        model.training.recordings.push_back(std::filesystem::path(recording.source).filename().string());
-    }
+    model.training.recordings = file_names(recordings);
     calibrate_innovation_limit(model, recordings, false);
     return model;
 }

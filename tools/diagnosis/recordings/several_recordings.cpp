@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -48,11 +47,8 @@ VectorXd estimated_gains(const Robot& robot, const std::vector<Recording>& recor
 
 /// Returns the files' names, or their paths where names are equal.
 std::vector<std::string> names_of(const std::vector<Recording>& recordings) {
-    std::vector<std::string> names;
-    for (const Recording& one : recordings) {
-        names.push_back(std::filesystem::path(one.source).filename().string());
-    }
-    const std::vector<std::string> short_names = names;
+    const std::vector<std::string> short_names = file_names(recordings);
+    std::vector<std::string> names = short_names;
     for (std::size_t r = 0; r < names.size(); ++r) {
         names[r] = std::ranges::count(short_names, names[r]) > 1 ? recordings[r].source : names[r];
     }

@@ -181,9 +181,10 @@ class JointStands {
     bool none() const { return pulses_.empty(); }
 
     std::vector<StationaryContact> contacts(const Holding& holding) const {
+        const double noise_variance = noise_.variance();
         std::vector<StationaryContact> result;
         for (const StandPulse& pulse : events_of(pulses_, between_s)) {
-            StationaryContact contact = contact_of(pulse, holding);
+            StationaryContact contact = contact_of(pulse, holding, noise_variance);
             if (contact.probability() >= least_probability) {
                 contact.share = contact.change * pulse_series(signals_, contact.pulse);
                 result.push_back(std::move(contact));
@@ -237,14 +238,15 @@ class JointStands {
         }
     }
 
-    StationaryContact contact_of(const StandPulse& pulse, const Holding& holding) const {
+    StationaryContact contact_of(const StandPulse& pulse, const Holding& holding,
+                                 double noise_variance) const {
         const double rigid = fits_[pulse.length].of(signals_.nominal.col(joint_), pulse.first).height;
         StationaryContact contact;
         contact.joint = static_cast<std::size_t>(joint_);
         contact.pulse = {pulse.start_s, pulse.end_s, push_flanks * (pulse.end_s - pulse.start_s)};
         contact.change = pulse.height;
         contact.change_deviation = usual_height(pulses_, pulse.length);
-        contact.noise = std::sqrt(2 * std::log(static_cast<double>(pulses_.size())) * noise_.variance() *
+        contact.noise = std::sqrt(2 * std::log(static_cast<double>(pulses_.size())) * noise_variance *
                                   fits_[pulse.length].variance());
         contact.held = 2 * holding.most;
         contact.held_deviation = std::hypot(2 * std::sqrt(holding.variance), uncertain_share * rigid);
