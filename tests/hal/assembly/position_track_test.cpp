@@ -90,6 +90,32 @@ TEST_CASE("two different positions with one stamp are both rejected") {
     CHECK(joint.track.not_later() == 1);
 }
 
+TEST_CASE("a position that is repeated with its stamp stays valid, also in another turn of its integer") {
+    constexpr double turn_rad = 6.283185307179586;
+    PositionTrack<16> track{{.max_age_ns = 6 * ms,
+                             .latency_ns = latency,
+                             .qualification = {},
+                             .period_ns = 2 * ms,
+                             .jitter_ns = ms / 4},
+                            {4, 9},
+                            {}};
+    JointValue value;
+    value.position_reason = Reason::ok;
+    value.step_rad = 1e-5;
+    value.wrap_rad = turn_rad;
+    value.from_zero_rad = 100;
+    for (std::int64_t time_ns = 0; time_ns <= 40 * ms; time_ns += 2 * ms) {
+        value.stamp_ns = time_ns + latency;
+        value.position_rad = at(time_ns); // 6.28 rad less than the joint's
+        track.push(value);
+    }
+    REQUIRE(track.at(40 * ms, 41 * ms).reason == Reason::ok);
+    CHECK(track.push(value) == Reason::time_not_increasing);
+    CHECK(track.not_later() == 1);
+    CHECK(track.at(40 * ms, 41 * ms).reason == Reason::ok);
+    CHECK(track.at(40 * ms, 41 * ms).value[0] == Approx(at(40 * ms) + turn_rad));
+}
+
 TEST_CASE("a second sender of a joint is detected by its rate, with any values") {
     Joint joint = moving();
     int collisions = 0;

@@ -3,6 +3,7 @@
 
 #include "dfdyn/hal/assembly/sampler.hpp"
 #include "dfdyn/hal/bus_event.hpp"
+#include "tests/hal/campaign/effects.hpp"
 #include "tests/hal/campaign/judge.hpp"
 
 #include <algorithm>
@@ -24,6 +25,7 @@ struct CampaignRow {
     std::uint64_t good = 0;           ///< samples outside of every fault and its recovery
     std::uint64_t refused_good = 0;   ///< good samples without positions
     std::uint64_t unlearned_good = 0; ///< good samples with positions and without an output that was due
+    FaultCounts effects;
     std::vector<std::uint64_t> wrong_by_fault;   ///< by the last fault that began before
     std::vector<std::uint64_t> refused_by_fault; ///< good samples, by the same fault
     std::vector<std::string> wrong, refused;     ///< descriptions of the first ones
@@ -106,9 +108,13 @@ class Campaign {
         placed_ = place(scene, faults);
         described_ = nullptr;
         for (PlacedFault& placed : placed_) {
+            const Traffic before = traffic;
             FaultSite site{arm_, traffic, placed.begin_ns, placed.end_ns, engine_, scene.truth};
             placed.fault->apply(site);
             placed.begin_ns = site.begin_ns; // some faults wait for motion
+            const Fault& fault = *placed.fault;
+            add(row_.effects[fault.number],
+                {1, can_have(arm_, fault) ? 1U : 0U, same_frames(before, traffic) ? 0U : 1U});
         }
         row_.faults += placed_.size();
         const FaultSite all{arm_, traffic, 0, 0, engine_, scene.truth};

@@ -39,12 +39,18 @@ struct Encoders {
     hal::Encoder real = hal::Encoder::unknown;
 };
 
-/// Runs one family and trigger, and adds its row to the sum.
+/// Runs one family and trigger, and adds its row to the sum. Only in long runs is a fault
+/// placed often enough to check that it changes the traffic of this family.
 inline void fight(const CampaignArm& arm, Trigger trigger, const Encoders& encoders, std::uint64_t frames,
                   std::mt19937_64& engine, CampaignRow& sum) {
     const CampaignRow row =
         Campaign(arm, trigger, encoders.described, engine).run(frames, campaign_faults(encoders.real));
     print(row, name_of(trigger));
+    CAPTURE(row.family);
+    check_effects(row.effects, {.of_any = 5, .in_motion = 30});
+    for (const auto& [number, count] : row.effects) {
+        add(sum.effects[number], count);
+    }
     sum.wrong.insert(sum.wrong.end(), row.wrong.begin(), row.wrong.end());
     sum.frames += row.frames;
     sum.faults += row.faults;
@@ -66,6 +72,9 @@ inline void check_sum(CampaignRow sum, double most_wrong, double most_refused,
                       double most_undecidable = 0.02) {
     sum.family = "all";
     print(sum, "");
+    constexpr std::size_t least_placed = 28; // of 31 or 32 faults
+    CHECK(sum.effects.size() >= least_placed);
+    check_effects(sum.effects, {.of_any = 3, .in_motion = 8});
     for (const std::string& wrong : sum.wrong) {
         std::cout << "wrong " << wrong << '\n';
     }

@@ -19,6 +19,13 @@ auto with_wrench_of(const Frames& earlier) {
     };
 }
 
+/// Replaces the wrench by that of a sensor that has just started: all zeros.
+void send_zero_wrench(Frames& frames) {
+    for (const std::size_t half : {force_frame, torque_frame}) {
+        frames[half] = at_time(frame_of(frames[half].id, {0, 0x80, 0, 0x80, 0, 0x80}), frames[half].stamp_ns);
+    }
+}
+
 } // namespace
 
 TEST_CASE("fault 14: repeated sensor values with new time stamps are not learned") {
@@ -196,13 +203,21 @@ TEST_CASE("fault 9: zeros of a sensor after power-on are not accepted as a wrenc
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     for (int tick = 0; tick < 100; ++tick) {
-        CHECK_FALSE(arm.tick([](Frames& frames) {
-                           for (const std::size_t half : {force_frame, torque_frame}) {
-                               frames[half] = at_time(frame_of(frames[half].id, {0, 0x80, 0, 0x80, 0, 0x80}),
-                                                      frames[half].stamp_ns);
-                           }
-                       })
-                        .learned);
+        CHECK_FALSE(arm.tick(send_zero_wrench).learned);
     }
     CHECK(arm.ticks_to_recover() <= ArmOnBus::qualification_ticks + 1);
+}
+
+TEST_CASE("fault 9: after a single wrench of zeros a sensor in use qualifies again") {
+    DFDYN_SEEDED_ENGINE(engine);
+    ArmOnBus arm(engine);
+    arm.warm_up();
+    const auto zero = arm.tick(send_zero_wrench);
+    CHECK(zero.predicted);
+    CHECK_FALSE(zero.learned);
+    CHECK(zero.output() == Reason::qualifying);
+    const int ticks = arm.ticks_to_recover();
+    CHECK(ticks >= ArmOnBus::qualification_ticks - 1);
+    CHECK(ticks <= ArmOnBus::qualification_ticks + 1);
+    CHECK(arm.run(10));
 }

@@ -3,6 +3,7 @@
 #include "tests/hal/motion/watched_joint.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace motion_recovery_test {
@@ -143,6 +144,30 @@ TEST_CASE("a loss ends with the reverse of its own first jump, also if that led 
     REQUIRE(joint.trusted(340, 1570) > 1000);
     CHECK(joint.trusted(1570, 2180, 2.69) == 0); // beyond 3 rad after five readings
     CHECK(joint.trusted(2180, 2600) > 100);
+}
+
+/// Readings within the range (3 rad) and beyond it, without a jump.
+bool is_trusted_after(double (*position_rad)(int tick), int ticks) {
+    Watched joint;
+    Reason last = Reason::ok;
+    for (int tick = 0; tick < ticks; ++tick) {
+        last = joint.take(tick, position_rad(tick));
+    }
+    CHECK_FALSE(joint.gate.lost());
+    return last == Reason::ok;
+}
+
+TEST_CASE("a joint that moved beyond its range without a jump is trusted after it returned") {
+    CHECK(is_trusted_after([](int tick) { return 2.9945 + 1e-3 * std::min(tick, 30 - tick); }, 530));
+    const auto at_its_end = [](int tick) { // flickers by two counts
+        return tick < 100 ? 3 + 1e-5 * (tick % 2 == 0 ? -1 : 1) : 3 - 5e-4 * (tick - 99);
+    };
+    CHECK(is_trusted_after(at_its_end, 300));
+    const auto often_beyond = [](int tick) { // for 20 readings, then within for six
+        const int moved = std::clamp(tick - 100, 0, 260);
+        return 3.00075 - 1e-3 * std::cos(0.2416609733530613 * moved);
+    };
+    CHECK(is_trusted_after(often_beyond, 860));
 }
 
 TEST_CASE("a jump soon after a silence is a contradiction, also with a lost reading") {

@@ -119,6 +119,31 @@ TEST_CASE("a velocity that never agreed with the position is no evidence") {
     }
 }
 
+TEST_CASE("a contradiction ends after 2 s without velocities, and a later velocity must agree again") {
+    VelocityWitness witness;
+    Joint joint;
+    int tick = 0;
+    double sent_rad = 0;
+    bool contradicted = false;
+    for (; tick < 12'000; ++tick) {
+        joint.step(tick);
+        sent_rad = tick < 10'250 ? joint.angle : sent_rad; // freezes at rest
+        contradicted = witness.contradicts(value_of(tick, sent_rad, joint.speed));
+    }
+    REQUIRE(contradicted);
+    for (; tick < 17'000; ++tick) {
+        joint.step(tick);
+        JointValue value = value_of(tick, joint.angle, 0);
+        value.has_velocity = false;
+        CAPTURE(tick);
+        CHECK(witness.contradicts(value) == (tick <= 12'999)); // the last velocity was at 11'999
+    }
+    for (; tick < 22'000; ++tick) {
+        joint.step(tick);
+        CHECK_FALSE(witness.contradicts(value_of(tick, joint.angle, 0.5 * joint.speed)));
+    }
+}
+
 TEST_CASE("a single jump, a silence and a value without velocity contradict nothing") {
     VelocityWitness witness;
     Joint joint;

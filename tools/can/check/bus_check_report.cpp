@@ -44,11 +44,12 @@ std::string sender_of(const BusCheck& check, const BusStream& stream) {
 
 void print_source(std::ostream& out, const BusCheck& check, const BusStreamKey& key,
                   const BusStream& stream) {
-    out << text("%-10s %9llu %9.1f %9.1f %9.3f %9.3f %9.1f %6.2f %6.1f  %s\n", id_text(key).c_str(),
+    out << text("%-10s %9llu %9.1f %9.1f %9.3f %9.3f %9.1f %6.2f %6.1f  ", id_text(key).c_str(),
                 static_cast<unsigned long long>(stream.count), stream.rate_hz(), stream.expected_hz,
                 1e3 * stream.jitter_s(), 1e-6 * static_cast<double>(stream.longest_gap_ns),
                 stream.count > 0 ? 1e3 * check.age_s(stream) : 0.0, 100 * stream.missing_share(),
-                share(check, stream.bits), sender_of(check, stream).c_str());
+                share(check, stream.bits))
+        << sender_of(check, stream) << '\n'; // may name many joints
 }
 
 std::string load_text(const BusCheck& check) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/check/value_watch.hpp"
 
+#include "dfdyn/hal/motion/encoder_reading.hpp"
 #include "tools/can/check/bus_stream.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -25,7 +27,7 @@ void ValueWatch::take(const hal::JointValue& value) {
         at_zero_ = value.raw_zero;
     }
     if (value.position_reason == hal::Reason::ok) {
-        take_position(value);
+        take_position(started_ ? unwrapped(value) : value);
     } else if (value.position_reason != hal::Reason::waiting_for_position) {
         after_fault_ = started_; // reported by the device
         started_ = false;
@@ -35,6 +37,14 @@ void ValueWatch::take(const hal::JointValue& value) {
     }
 }
 
+/// Returns the value in the turn of its integer that is nearest to the last position that was no jump.
+hal::JointValue ValueWatch::unwrapped(hal::JointValue value) const {
+    hal::EncoderReading reading{.position_rad = value.position_rad, .wrap_rad = value.wrap_rad};
+    hal::unwrap_near(reading, steady_rad_);
+    value.position_rad = reading.position_rad;
+    return value;
+}
+
 void ValueWatch::take_position(const hal::JointValue& value) {
     ++positions_;
     const std::int64_t step_ns = value.stamp_ns - stamp_ns_;
@@ -42,7 +52,7 @@ void ValueWatch::take_position(const hal::JointValue& value) {
     const std::int64_t from_ns = stamp_ns_;
     const double step_rad = value.position_rad - from_rad;
     const bool comparable = started_ && step_ns > 0;
-    started_ = true;
+    const bool first = !std::exchange(started_, true);
     stamp_ns_ = comparable ? value.stamp_ns : std::max(stamp_ns_, value.stamp_ns);
     position_rad_ = value.position_rad;
     const bool was_zero = zero_;
@@ -57,13 +67,15 @@ void ValueWatch::take_position(const hal::JointValue& value) {
         before_zero_rad_ = from_rad;
         before_zero_ns_ = from_ns;
     }
-    if (!comparable || zero_ || was_zero) {
+    bool moves = !first && !zero_ && !was_zero; // no motion leads from a jump or a zero to the next position
+    if (comparable && moves) {
+        moves = take_step(value, step_ns, step_rad);
+    } else {
         take_zero(value, was_zero);
-        return;
     }
-    take_step(value, step_ns, step_rad);
-    lowest_rad_ = std::min(lowest_rad_, position_rad_);
-    highest_rad_ = std::max(highest_rad_, position_rad_);
+    steady_rad_ = moves || first ? position_rad_ : steady_rad_;
+    lowest_rad_ = moves ? std::min(lowest_rad_, position_rad_) : position_rad_;
+    highest_rad_ = moves ? std::max(highest_rad_, position_rad_) : position_rad_;
 }
 
 /// Counts zeros between other positions. Zeros from which the next positions continue are the first ones of
@@ -131,7 +143,8 @@ void ValueWatch::follow_interval(std::int64_t step_ns) {
     mean_interval_ns_ += 0.1 * (std::min(interval_ns, most_ns) - mean_interval_ns_);
 }
 
-void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, double step_rad) {
+/// Returns true if the joint can have made the step.
+bool ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, double step_rad) {
     const double step_s = seconds_of(step_ns);
     const bool far = std::abs(step_rad) > few_counts * smallest_step_rad_;
     const bool thaws = is_long() && far && std::abs(step_rad) / step_s > limits_.acceleration * step_s;
@@ -151,7 +164,7 @@ void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, d
             stop_rad_per_s2_ = stop_within(step_s);
         }
         ++equal_;
-        return;
+        return true;
     }
     smallest_step_rad_ = std::min(smallest_step_rad_, std::abs(step_rad));
     if (thaws) {
@@ -167,6 +180,7 @@ void ValueWatch::take_step(const hal::JointValue& value, std::int64_t step_ns, d
     last_speed_rad_per_s_ = jump ? 0 : step_rad / changed_s;
     speed_rad_per_s_ = jump ? 0 : speed_rad_per_s_ + 0.3 * (last_speed_rad_per_s_ - speed_rad_per_s_);
     equal_ = 0;
+    return !jump && !thaws;
 }
 
 /// Decides if the positions before the last step were frozen. If the next position returns to them, a bit

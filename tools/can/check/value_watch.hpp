@@ -44,9 +44,10 @@ class ValueWatch {
   private:
     static constexpr std::size_t most_jumps = 64;
 
+    hal::JointValue unwrapped(hal::JointValue value) const;
     void take_position(const hal::JointValue& value);
     void take_zero(const hal::JointValue& value, bool was_zero);
-    void take_step(const hal::JointValue& value, std::int64_t step_ns, double step_rad);
+    bool take_step(const hal::JointValue& value, std::int64_t step_ns, double step_rad);
     bool restarts(const hal::JointValue& value, std::int64_t step_ns, double step_rad) const;
     double turns_of(double step_rad) const;
     void note_jump(const hal::JointValue& value, double from_rad, bool after_silence);
@@ -78,6 +79,7 @@ class ValueWatch {
     bool after_fault_ = false; ///< the device reported a fault instead of the last position
     bool zero_ = false;        ///< the last position was one of `zeros_`
     std::int64_t stamp_ns_ = 0;
+    double steady_rad_ = 0; ///< last position that was no jump and no zero
     double position_rad_ = 0;
     double mean_interval_ns_ = 0; ///< mean interval between positions
     double speed_rad_per_s_ = 0;  ///< moving average of the speed
@@ -94,7 +96,8 @@ class ValueWatch {
     bool effort_started_ = false;
     double effort_ = 0;
     std::uint64_t equal_efforts_ = 0;
-    double lowest_rad_ = 0, highest_rad_ = 0; ///< range of positions since the last change of the effort
+    /// Range of the positions since the last change of the effort, or since the last jump.
+    double lowest_rad_ = 0, highest_rad_ = 0;
     std::int64_t effort_changed_ns_ = 0;
     std::uint64_t frozen_efforts_ = 0, saturated_efforts_ = 0;
 };

@@ -140,7 +140,9 @@ hal::Decoded DbcJoint::decode(const hal::Frame& frame) const noexcept {
         value.position_rad = config_.position.value(frame);
         const hal::Signal& signal = config_.position.signal;
         value.from_zero_rad = value.position_rad - signal.offset;
-        value.step_rad = signal.step() > 0 ? signal.step() : float_step * std::abs(value.from_zero_rad);
+        const double rounding =
+            signal.step() > 0 ? signal.step() : float_step * std::abs(value.from_zero_rad);
+        value.step_rad = std::max(config_.count_rad, rounding);
         value.wrap_rad = signal.span();
         value.raw_zero = config_.position.raw(frame) == 0;
         value.position_reason = config_.position.is_void(value.position_rad)

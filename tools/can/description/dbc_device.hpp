@@ -70,6 +70,7 @@ class DbcJoint {
         int joint = 0;
         DbcField position;
         std::optional<DbcField> effort;
+        double count_rad = 0; ///< one count of the encoder, if the signal is finer; 0: that of the signal
         bool claims_position = true; ///< false: another joint with the same identifier claims it
         bool claims_effort = true;
     };

@@ -122,7 +122,7 @@ DbcField read_own_field(const JsonReader& board, const std::string& name, const 
     const JsonReader reader = board.object(name);
     Names names{"message", "signal", "scale", "offset"};
     if (angle) {
-        names.emplace_back("unit");
+        names.insert(names.end(), {"unit", "count_rad"});
     }
     reader.allow_only(names);
     DbcField field = read_field(reader, dbc, angle ? radians_per(reader) : 1);
@@ -139,6 +139,7 @@ DbcJoint read_dbc_joint(const JsonReader& board, const Dbc& dbc, std::span<const
     DbcJoint::Config config;
     config.joint = read_joint(board);
     config.position = read_own_field(board, "position", dbc, true, before);
+    config.count_rad = board.object("position").number_or("count_rad", 0, 1e-9, 0.1);
     if (board.has("effort")) {
         config.effort = read_own_field(board, "effort", dbc, false, before);
     }

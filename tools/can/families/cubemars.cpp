@@ -61,6 +61,7 @@ const std::vector<FamilyField> cubemars_bus_fields{
 
 hal::CubemarsMitMotor::Config read_cubemars_mit_motor(const JsonReader& board, std::uint32_t feedback_id) {
     board.allow_only(names_of(cubemars_fields));
+    reject_fields(board, {"pole_pairs", "gear_ratio", "newton_metre_per_ampere"}, R"(protocol "mit")");
     hal::CubemarsMitMotor::Config config;
     config.motor_id = board.whole_number("motor_id", 1, 255);
     config.feedback_id = identifier_or(board, "feedback_id", feedback_id);
@@ -77,12 +78,11 @@ hal::CubemarsMitMotor::Config read_cubemars_mit_motor(const JsonReader& board, s
 
 BusBoard read_cubemars_servo(const JsonReader& board, int packet, std::vector<int>& motors) {
     board.allow_only(names_of(cubemars_fields));
+    reject_fields(board, {"feedback_id", "motor", "position_max", "velocity_max", "torque_max"},
+                  R"(protocol "servo")");
     hal::CubemarsServo::Config config;
     config.motor_id = board.whole_number("motor_id", 0, 255);
-    if (std::ranges::find(motors, config.motor_id) != motors.end()) {
-        throw board.error("motor_id", "a motor_id of its own", std::to_string(config.motor_id) + " again");
-    }
-    motors.push_back(config.motor_id);
+    take_own_id(board, "motor_id", config.motor_id, motors);
     config.packet = packet;
     config.joint = read_joint(board);
     config.pole_pairs = board.number_or("pole_pairs", config.pole_pairs, 1, 100);
@@ -97,12 +97,14 @@ void read_cubemars_motors(const JsonReader& joints, const std::filesystem::path&
                           BusDescription& description) {
     const std::string protocol = joints.has("protocol") ? joints.text("protocol") : "mit";
     if (protocol == "mit") {
+        reject_fields(joints, {"packet"}, R"(protocol "mit")");
         const std::uint32_t feedback_id = identifier_or(joints, "feedback_id", 0);
         add_mit_motors<CubemarsMitMotor, hal::CubemarsMitMotor>(
             joints, true,
             [&](const JsonReader& board) { return read_cubemars_mit_motor(board, feedback_id); },
             description);
     } else if (protocol == "servo") {
+        reject_fields(joints, {"feedback_id"}, R"(protocol "servo")");
         const int packet = joints.has("packet") ? static_cast<int>(identifier_or(joints, "packet", 0)) : -1;
         std::vector<int> motors;
         read_each_board(

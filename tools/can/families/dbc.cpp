@@ -56,8 +56,9 @@ JointFamily dbc_joints() {
                              {"position", ""},
                              {"effort",
                               "(optional), each `message`, `signal` of the DBC file, `scale` (1), "
-                              "`offset` (0); of a position also `unit` (`rad`, `deg`, `turn`): value = (what "
-                              "the DBC file says · scale + offset) in that unit"}},
+                              "`offset` (0); of a position also `unit` (`rad`, `deg`, `turn`) and "
+                              "`count_rad` (rad; one count of the encoder, if the signal is finer): value = "
+                              "(what the DBC file says · scale + offset) in that unit"}},
             .fields = {{"file", "(the DBC file, relative to the description)"}},
             .read = read_joints,
             .devices = "Joints whose messages a DBC file describes",

@@ -33,6 +33,22 @@ double ratio_or(const JsonReader& reader, const std::string& name, double absent
 
 double read_zero_rad(const JsonReader& board) { return board.number_or("zero_rad", 0, -1000, 1000); }
 
+void take_own_id(const JsonReader& board, const std::string& name, int id, std::vector<int>& taken) {
+    if (std::ranges::find(taken, id) != taken.end()) {
+        throw board.error(name, "a number of its own", std::to_string(id) + " again");
+    }
+    taken.push_back(id);
+}
+
+void reject_fields(const JsonReader& reader, std::initializer_list<const char*> names,
+                   const std::string& chosen) {
+    for (const char* const name : names) {
+        if (reader.has(name)) {
+            throw reader.error(name, "no such field with " + chosen, "one");
+        }
+    }
+}
+
 std::array<double, 6> read_limit(const JsonReader& output) {
     std::array<double, 6> limit{};
     std::ranges::copy(output.positive_numbers("limit", 6), limit.begin());

@@ -5,6 +5,7 @@
 #include "tools/can/families/family.hpp"
 
 #include <array>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,13 @@ double ratio_or(const JsonReader& reader, const std::string& name, double absent
 
 /// Reads `zero_rad` (default 0): the joint's position where the encoder shows 0.
 double read_zero_rad(const JsonReader& board);
+
+/// Notes the number `id` of a board, read from its field `name`. Throws InputError if it is in `taken`.
+void take_own_id(const JsonReader& board, const std::string& name, int id, std::vector<int>& taken);
+
+/// Throws InputError for a field of `names`, which have no meaning with the `chosen` option.
+void reject_fields(const JsonReader& reader, std::initializer_list<const char*> names,
+                   const std::string& chosen);
 
 /// Reads `limit`: the measuring range ± per axis.
 std::array<double, 6> read_limit(const JsonReader& output);

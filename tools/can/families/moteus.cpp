@@ -43,10 +43,7 @@ BusBoard read_moteus_controller(const JsonReader& board, hal::MoteusController::
                                 std::vector<int>& ids) {
     board.allow_only(names_of(moteus_fields));
     config.id = board.whole_number("id", 1, 127);
-    if (std::ranges::find(ids, config.id) != ids.end()) {
-        throw board.error("id", "an id of its own", std::to_string(config.id) + " again");
-    }
-    ids.push_back(config.id);
+    take_own_id(board, "id", config.id, ids);
     config.joint = read_joint(board);
     config.motor_per_joint = ratio_or(board, "motor_per_joint", 1);
     config.zero_rad = read_zero_rad(board);

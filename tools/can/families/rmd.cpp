@@ -66,6 +66,9 @@ BusBoard read_rmd_motor(const JsonReader& board, hal::RmdMotor::Config config) {
     board.allow_only(names_of(rmd_fields));
     config.motor_id = board.whole_number("motor_id", 1, 32);
     config.joint = read_joint(board);
+    if (config.position != hal::RmdPosition::encoder) {
+        reject_fields(board, {"counts_per_turn"}, R"(position other than "encoder")");
+    }
     config.counts_per_turn = board.number_or("counts_per_turn", config.counts_per_turn, 1, 1e9);
     config.newton_metre_per_ampere = read_torque_constant(board);
     config.motor_per_joint = ratio_or(board, "motor_per_joint", 1);
@@ -135,7 +138,14 @@ void add_rmd_motor(int motor, const JointFit& fit, Recognition& recognition) {
 }
 
 /// Adds the properties of recognised motors that the frames do not determine.
-void add_rmd_doubts(hal::RmdPosition position, bool old, std::vector<std::string>& unsure) {
+void add_rmd_doubts(hal::RmdPosition position, const std::map<int, hal::RmdPosition>& finest_of, bool old,
+                    std::vector<std::string>& unsure) {
+    for (const auto& [motor, finest] : finest_of) {
+        if (finest != position) {
+            unsure.push_back("motor " + std::to_string(motor) + ": sends no positions of the kind " +
+                             rmd_position_names.at(static_cast<std::size_t>(position)));
+        }
+    }
     unsure.emplace_back("torques: efforts are currents without newton_metre_per_ampere");
     if (position == hal::RmdPosition::encoder) {
         unsure.emplace_back("counts_per_turn: 65536 is assumed");
@@ -149,15 +159,18 @@ Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
     Recognition recognition;
     recognition.quantity = "i";
     const bool old = driver == hal::RmdDriver::v2;
-    hal::RmdPosition position = hal::RmdPosition::multi_turn;
+    hal::RmdPosition position = hal::RmdPosition::multi_turn; // of all motors of the draft
+    std::map<int, hal::RmdPosition> finest_of;
     std::set<unsigned> answering;
     for (const auto& [motor, commands] : rmd_answers(frames, driver)) {
-        position = finest_rmd_position(commands);
+        const hal::RmdPosition finest = finest_rmd_position(commands);
         const CodecFit fit =
-            fit_codec(hal::RmdMotor({.motor_id = motor, .driver = driver, .position = position}), frames);
+            fit_codec(hal::RmdMotor({.motor_id = motor, .driver = driver, .position = finest}), frames);
         if (!fit.fits()) {
             continue;
         }
+        position = answering.empty() ? finest : std::min(position, finest);
+        finest_of[motor] = finest;
         add_rmd_motor(motor, fit.joint[0], recognition);
         answering.insert(static_cast<unsigned>(motor));
         for (const auto& [command, count] : commands) {
@@ -172,7 +185,7 @@ Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
     recognition.fields = {{"driver", old ? "V2" : "V3"},
                           {"position", rmd_position_names.at(static_cast<std::size_t>(position))}};
     if (!recognition.boards.empty()) {
-        add_rmd_doubts(position, old, recognition.unsure);
+        add_rmd_doubts(position, finest_of, old, recognition.unsure);
     }
     return recognition;
 }

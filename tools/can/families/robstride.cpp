@@ -90,12 +90,9 @@ void read_private_robstride(const JsonReader& joints, std::uint32_t host, BusDes
     read_each_board(
         joints,
         [&](const JsonReader& board) {
+            reject_fields(board, {"feedback_id"}, R"(protocol "private")");
             auto config = read_robstride_motor<hal::RobstrideMotor::Config>(board);
-            if (std::ranges::find(motors, config.motor_id) != motors.end()) {
-                throw board.error("motor_id", "a motor_id of its own",
-                                  std::to_string(config.motor_id) + " again");
-            }
-            motors.push_back(config.motor_id);
+            take_own_id(board, "motor_id", config.motor_id, motors);
             config.host_id = static_cast<int>(host);
             return one_joint<RobstrideMotor>(hal::RobstrideMotor(config), config.joint);
         },

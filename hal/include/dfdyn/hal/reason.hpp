@@ -59,8 +59,9 @@ enum class Reason : std::uint8_t {
     /// The device reports a fault. Ends when it reports none. Remedy: read its error code and clear the
     /// fault.
     device_fault = 43,
-    /// The device is not in its operational state. Ends with a heartbeat that reports this state. If the
-    /// device sends no heartbeat, it ends with the next values. Remedy: start the node.
+    /// The device is not in its operational state. Ends with a heartbeat that reports this state. Without a
+    /// heartbeat_timeout_s it also ends after 3 s without a heartbeat; a boot-up ends with the next values.
+    /// Remedy: start the node.
     device_not_operational = 44,
     /// The device's heartbeat, which must confirm that the values are good, is missing. Remedy: enable it.
     heartbeat_missing = 45,
@@ -104,7 +105,8 @@ enum class Reason : std::uint8_t {
     /// After a jump or a restart the joint's positions continue from a different value: the encoder has lost
     /// its zero, or another device sends. Ends when they return to values that the joint can have. After a
     /// restart at the encoder's zero it ends with a new start only. Remedy: check the joint's position; set
-    /// its zero; start again; joints.encoder, if the encoder is absolute.
+    /// its zero; start again; joints.encoder, if the encoder is absolute. Also after a silence, while a
+    /// wrapping integer has several turns within the joint's range. Remedy: start again; joints.limit_rad.
     position_lost = 65,
     /// A moving joint repeats its last position bit for bit and cannot have stopped. Ends when the position
     /// changes.

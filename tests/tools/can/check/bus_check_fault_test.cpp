@@ -149,6 +149,50 @@ TEST_CASE("a joint at rest and one that decelerates normally give no finding") {
     CHECK(rules(bus, frames) == Names{});
 }
 
+/// Two drives with positions of 16 bits, which wrap after a turn, and efforts on the PDO `effort`.
+BusDescription drives_of_16_bits(const std::string& effort) {
+    return described(R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 125,
+        "trigger": {"on": "sync"}, "joints": {"family": "cia402",
+            "position": {"pdo": "0x280", "length": 2, "start_bit": 0, "bits": 16},
+            "effort": {"pdo": ")" +
+                     effort + R"(", "length": 2, "start_bit": 0, "bits": 16}, "boards": [
+                {"node": 1, "joint": 1, "counts_per_turn": 65536, "effort_per_count": 0.01},
+                {"node": 2, "joint": 2, "counts_per_turn": 65536, "effort_per_count": 0.01}]},
+        "output": {"family": "efforts", "quantity": "tau"}})");
+}
+
+TEST_CASE("an arm at rest with constant efforts gives no finding, and a flipped bit only its own") {
+    const BusDescription bus = drives_of_16_bits("0x180"); // sent before the positions
+    Frames frames;
+    dfdyn::tools::BusTraffic traffic(bus, {20, 1}, [&](const Frame& frame) { frames.push_back(frame); });
+    for (int row = 0; row < 500; ++row) {
+        traffic.add(row * std::int64_t{8'000'000}, std::vector<double>{1.2, 0.9}, std::vector<double>{2, 1});
+    }
+    traffic.finish();
+    CHECK(rules(bus, frames) == Names{});
+    const auto middle = std::ranges::find_if(
+        frames, [](const Frame& frame) { return frame.id == 0x281 && frame.stamp_ns > 2'000'000'000; });
+    REQUIRE(middle != frames.end());
+    for (const int bit : {0x08, 0x10}) {
+        CAPTURE(bit);
+        Frame& frame = *middle;
+        frame.data[1] = static_cast<std::uint8_t>(frame.data[1] ^ bit);
+        CHECK(rules(bus, frames) == Names{"bits_flipped"});
+        frame.data[1] = static_cast<std::uint8_t>(frame.data[1] ^ bit);
+    }
+}
+
+TEST_CASE("a joint that passes the wrap of its drive's integer gives no finding") {
+    const BusDescription bus = drives_of_16_bits("0x380");
+    CHECK(rules(bus, changed(sound(bus, 8), [](Frame& frame) {
+                    if (frame.id == 0x281) { // around half a turn
+                        const auto counts = dfdyn::hal::load_little<std::uint16_t>(frame.data.data());
+                        dfdyn::hal::store_little(frame.data.data(),
+                                                 static_cast<std::uint16_t>(counts + 28'600));
+                    }
+                })) == Names{});
+}
+
 TEST_CASE("two senders of a joint's identifier are found and their positions give no finding") {
     for (const BusDescription& description : every_family()) {
         CAPTURE(description.source);

@@ -288,3 +288,21 @@ TEST_CASE("frames of more identifiers than are stored are observed in bounded me
     CHECK_THAT(out.str(),
                Catch::Matchers::Contains("0x111 ") && Catch::Matchers::Contains("joint 1, joint 2\n"));
 }
+
+TEST_CASE("each identifier begins a line of the report, also if twelve joints share one") {
+    std::string boards;
+    for (int joint = 1; joint <= 12; ++joint) {
+        const std::string number = std::to_string(joint);
+        boards += std::string(joint > 1 ? ", " : "") + R"({"motor": "AK80-9", "motor_id": )" + number +
+                  R"(, "joint": )" + number + "}";
+    }
+    const BusDescription bus = described(
+        R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 100, "trigger": {"on": "set"},
+            "joints": {"family": "cubemars", "boards": [)" +
+        boards + R"(]}, "output": {"family": "efforts", "quantity": "tau"}})");
+    Frames frames(2, dfdyn::hal::make_frame(0x7A5, 8));
+    frames[1].stamp_ns = 1'000'000'000;
+    std::ostringstream out;
+    print_bus_check(out, checked(bus, frames), {});
+    CHECK_THAT(out.str(), Catch::Matchers::Contains("joint 11, joint 12\n0x7A5 "));
+}

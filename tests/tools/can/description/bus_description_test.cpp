@@ -10,6 +10,7 @@
 namespace {
 
 using namespace dfdyn::tools;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
 using dfdyn::tests::bus_folder;
 using dfdyn::tests::file_content;
@@ -187,6 +188,55 @@ TEST_CASE("a Damiao motor's scale has no default if libraries disagree about it"
         refusal_of_damiao_arm(R"(, "motor": "DM4310")",
                               R"(, {"motor_id": 2, "feedback_id": "0x1", "joint": 2, "motor": "DM4310"})"),
         EndsWith("found answers on 0x1, which is motor_id 1"));
+}
+
+/// Error for an arm of one motor. `options`: fields of `joints`; `board`: fields of the motor.
+std::string refusal_of_motor(const std::string& options, const std::string& board) {
+    try {
+        dfdyn::tests::described(
+            R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 500, "trigger": {"on": "set"},
+                "joints": {)" +
+            options + R"(, "boards": [{"motor_id": 1, "joint": 1)" + board +
+            R"(}]}, "output": {"family": "efforts", "quantity": "i"}})");
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST_CASE("an option that has no meaning with the chosen protocol is rejected by its name") {
+    struct Unused {
+        const char* options;
+        const char* board;
+        const char* message;
+    };
+    const auto [options, board, message] = GENERATE(values<Unused>({
+        {R"("family": "cubemars")", R"(, "motor": "AK80-9", "pole_pairs": 21)",
+         R"(joints.boards[0].pole_pairs: expected no such field with protocol "mit", found one)"},
+        {R"("family": "cubemars")", R"(, "motor": "AK80-9", "gear_ratio": 9)", "boards[0].gear_ratio: "},
+        {R"("family": "cubemars")", R"(, "motor": "AK80-9", "newton_metre_per_ampere": 1)",
+         "boards[0].newton_metre_per_ampere: "},
+        {R"("family": "cubemars", "packet": "0x29")", R"(, "motor": "AK80-9")", "joints.packet: "},
+        {R"("family": "cubemars", "protocol": "servo", "feedback_id": "0x0")", "", "joints.feedback_id: "},
+        {R"("family": "cubemars", "protocol": "servo")", R"(, "feedback_id": "0x0")",
+         R"(joints.boards[0].feedback_id: expected no such field with protocol "servo", found one)"},
+        {R"("family": "cubemars", "protocol": "servo")", R"(, "motor": "AK80-9")", "boards[0].motor: "},
+        {R"("family": "cubemars", "protocol": "servo")", R"(, "position_max": 12)",
+         "boards[0].position_max: "},
+        {R"("family": "cubemars", "protocol": "servo")", R"(, "velocity_max": 12)",
+         "boards[0].velocity_max: "},
+        {R"("family": "cubemars", "protocol": "servo")", R"(, "torque_max": 12)", "boards[0].torque_max: "},
+        {R"("family": "robstride")", R"(, "motor": "RS03", "feedback_id": "0xFD")",
+         R"(joints.boards[0].feedback_id: expected no such field with protocol "private", found one)"},
+        {R"("family": "rmd")", R"(, "counts_per_turn": 65536)",
+         R"(counts_per_turn: expected no such field with position other than "encoder", found one)"},
+        {R"("family": "rmd", "position": "status")", R"(, "counts_per_turn": 65536)",
+         "boards[0].counts_per_turn: "},
+    }));
+    CAPTURE(options, board);
+    CHECK_THAT(refusal_of_motor(options, board), ContainsSubstring(message));
+    CHECK(refusal_of_motor(R"("family": "rmd", "position": "encoder")", R"(, "counts_per_turn": 1000)")
+              .empty());
 }
 
 TEST_CASE("buscheck finds that a Damiao motor's velocities have another scale than its positions") {

@@ -231,6 +231,20 @@ TEST_CASE("faults of motors are reported on a bus without a description") {
           })) == Names{"silent_motor"});
 }
 
+TEST_CASE("a few frames like those of another RMD motor do not change the position of the draft") {
+    Frames frames = frames_of("rmd");
+    for (const std::size_t quarter : {1U, 2U, 3U}) {
+        Frame other = hal::make_frame(0x25C, 8); // motor 28, too few answers to recognise it
+        other.data[0] = 0x9C;
+        other.stamp_ns = frames[quarter * frames.size() / 4].stamp_ns;
+        frames.push_back(other);
+    }
+    std::ranges::stable_sort(frames, {}, &Frame::stamp_ns);
+    const RecognisedBus bus = recognise_bus(frames);
+    REQUIRE(bus.draft);
+    CHECK(bus.draft->at("joints").at("position") == "multi_turn");
+}
+
 TEST_CASE(
     "a Damiao motor's velocity maximum is measured where libraries disagree and registers are not read") {
     const Frames unread = without(frames_of("damiao"), [](const Frame& frame) {

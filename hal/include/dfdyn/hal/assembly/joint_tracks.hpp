@@ -66,7 +66,7 @@ class JointTracks {
 
     constexpr void follow_clock(PositionTrack<capacity>& track, std::int64_t stamp_ns) noexcept {
         const std::int64_t tolerance_ns = 2 * jitter_ns_;
-        if (!track.motion().lost()) {
+        if (period_ns_ <= 0 || !track.motion().lost()) { // no joint shows a step if its period is unknown
             return;
         }
         if (const auto step_ns = steps_.step_ns(stamp_ns, tolerance_ns)) {

@@ -27,9 +27,9 @@ namespace dfdyn::hal {
 ///
 /// Values carry `device_not_operational` from a heartbeat with another state until one with the operational
 /// state. Many drives send no heartbeat, but every drive sends a boot-up message. Without
-/// `heartbeat_timeout_ns` the next PDO therefore ends the condition, because a drive sends PDOs only while it
-/// is operational (CiA 301). The first value after a boot-up that interrupts the PDOs carries
-/// `device_restarted`.
+/// `heartbeat_timeout_ns` the next PDO therefore ends a boot-up, because a drive sends PDOs only while it is
+/// operational (CiA 301). A heartbeat with another state still rejects every PDO until 3 s without a
+/// heartbeat. The first value after a boot-up that interrupts the PDOs carries `device_restarted`.
 ///
 /// Until EMCY 0 or a boot-up, positions carry `encoder_fault` after an EMCY of a sensor (0x73xx), and efforts
 /// carry `device_fault` after any EMCY. An effort at an end of its range carries `output_saturated`. A remote

@@ -42,6 +42,14 @@ constexpr void unwrap_near(EncoderReading& reading, double about_rad) noexcept {
     }
 }
 
+/// Moves a reading of a wrapping integer to the turn nearest to the middle of the joint's range. Returns true
+/// if no other turn lies within the range. O(1).
+constexpr bool unwrap_within(EncoderReading& reading, const Range& range) noexcept {
+    unwrap_near(reading, 0.5 * (range.highest + range.lowest));
+    return reading.position_rad - reading.wrap_rad < range.lowest &&
+           reading.position_rad + reading.wrap_rad > range.highest;
+}
+
 /// Returns true if the joint's range is narrower than one turn of its encoder's integer.
 [[nodiscard]] constexpr bool has_one_turn(const Range& range, double wrap_rad) noexcept {
     return range.highest - range.lowest < wrap_rad;

@@ -53,10 +53,11 @@ class MotionGate : private MotionEvidence {
 
     /// Takes a reading and returns whether it is trusted. Stamps must increase.
     constexpr Verdict take(const EncoderReading& reading) noexcept {
-        const bool expected = is_expected(reading);
+        EncoderReading unwrapped = reading;
+        unwrap(unwrapped);
+        const bool expected = is_expected(unwrapped);
         follow_away(reading);
         const Verdict verdict = judge(reading);
-        EncoderReading unwrapped = reading;
         unwrapped.position_rad = verdict.position_rad;
         if (verdict.reason == Reason::ok) {
             away_.trust(unwrapped, is_established());
@@ -68,8 +69,7 @@ class MotionGate : private MotionEvidence {
         return verdict;
     }
 
-    /// Takes a reading of unknown time. It gives no position, but it may reveal an encoder that counts from
-    /// its own zero.
+    /// Takes a reading of unknown time, which may only reveal an encoder that counts from its own zero.
     constexpr void glance(EncoderReading reading) noexcept {
         unwrap_near(reading, trusted_.last().position_rad);
         candidate_.contradict(unfit_.contradict(reading));
@@ -91,7 +91,8 @@ class MotionGate : private MotionEvidence {
     constexpr void contradict() noexcept { candidate_.contradict(true); }
 
     /// Takes a reading that the device marked as not ready: the device must qualify again.
-    constexpr void interrupt(const EncoderReading& reading) noexcept {
+    constexpr void interrupt(EncoderReading reading) noexcept {
+        unwrap(reading);
         restarts_ += !trusted_.empty() && !interrupted_ ? 1U : 0U;
         interrupted_ = true;
         candidate_.contradict((!reading.zero && candidate_.disputes(reading, comparison_)) ||
@@ -224,7 +225,8 @@ class MotionGate : private MotionEvidence {
     }
 
     constexpr Verdict take_beyond_range(const EncoderReading& reading) noexcept {
-        if (comparison_.continues(run(), reading)) { // rejected also when it returns or wraps
+        const bool jumped = lost() || magnitude(jump_rad_) > 2 * jump_error_rad_;
+        if (jumped && comparison_.continues(run(), reading)) { // rejected also when it returns or wraps
             begin_loss(run());
             refused_.extend(reading, tolerance_);
         }
@@ -242,8 +244,7 @@ class MotionGate : private MotionEvidence {
         return checked(reading);
     }
 
-    /// Rejects a reading if two of the last eight were inconsistent, because the others may be the wrong
-    /// ones.
+    /// Rejects a reading if two of the last eight were inconsistent: the others may be the wrong ones.
     constexpr Verdict checked(const EncoderReading& reading) noexcept {
         return std::popcount(off_) < 2 ? Verdict{Reason::ok, reading.position_rad}
                                        : refuse(reading, Reason::position_jump);

@@ -119,11 +119,11 @@ class MotionEvidence {
         return to_ns - from_ns <= 3 * config_.max_age_ns;
     }
 
-    /// Unwraps a reading. Returns true if the turn is unambiguous: the range has only one, or the last
-    /// reading is near. The first reading is not changed.
-    [[nodiscard]] constexpr bool unwrap(EncoderReading& reading) const noexcept {
+    /// Unwraps a reading. Returns true if the turn is unambiguous: the last reading is near, or no other turn
+    /// lies within the range. The first reading is not changed.
+    constexpr bool unwrap(EncoderReading& reading) const noexcept {
         if (has_one_turn(config_.range, reading.wrap_rad)) {
-            unwrap_near(reading, 0.5 * (config_.range.highest + config_.range.lowest));
+            unwrap_within(reading, config_.range);
             return true;
         }
         const MotionRun& known = run().empty() ? trusted_ : run();
@@ -132,7 +132,8 @@ class MotionEvidence {
         }
         unwrap_near(reading, known.last().position_rad);
         const double dt_s = seconds_between(known.last().stamp_ns, reading.stamp_ns);
-        return tolerance_.reach(dt_s, reading.step_rad) < 0.5 * reading.wrap_rad;
+        const bool near = tolerance_.reach(dt_s, reading.step_rad) < 0.5 * reading.wrap_rad;
+        return near || unwrap_within(reading, config_.range);
     }
 
     /// Returns the undecided run.

@@ -18,14 +18,21 @@ namespace dfdyn::hal {
 /// of the velocity. They contradict each other if they differ by more than a fifth of the distance by
 /// velocity, a lag of 30 ms, 0.05 rad/s, 20 mrad and four counts together. A velocity that has not agreed
 /// with the position over `known_rad` may be described wrongly, and is no evidence. A single jump is left to
-/// the MotionGate. O(1).
+/// the MotionGate. Positions that come without a velocity for 2 s are no longer contradicted, and a later
+/// velocity must agree again. O(1).
 class VelocityWitness {
   public:
     static constexpr double known_rad = 1; ///< over which the two must agree first
 
     /// Takes a value with a position. Returns true while position and velocity contradict each other. This
-    /// ends when they agree over 0.05 rad.
+    /// ends when they agree over 0.05 rad, or when the device sends no velocity any more.
     constexpr bool contradicts(const JointValue& value) noexcept {
+        velocity_ns_ = value.has_velocity ? value.stamp_ns : velocity_ns_;
+        if (seconds_between(velocity_ns_, value.stamp_ns) >
+            longest_window_s) { // the device stopped sending it
+            agreed_rad_ = 0;
+            contradicted_ = false;
+        }
         const double apart_s = seconds_between(last_.stamp_ns, value.stamp_ns);
         const bool follows =
             last_.has_velocity && value.has_velocity && apart_s > 0 && apart_s < longest_step_s;
@@ -113,6 +120,7 @@ class VelocityWitness {
     }
 
     JointValue last_;
+    std::int64_t velocity_ns_ = 0; ///< stamp of the last value with a velocity
     Window window_;
     double agreed_rad_ = 0; ///< by velocity, in successive windows that agreed; at most `known_rad`
     bool contradicted_ = false;
