@@ -119,6 +119,9 @@ std::string parameter_fault(const HiddenEffect& hidden, const Finding& finding, 
             allowed = 2 * tolerance;
         } else if (name != hidden.parameters.front().first) {
             allowed = std::max(allowed, (found->high - found->low) / 2);
+            if (!(allowed <= std::abs(value - null_value(hidden.effect, name)))) {
+                fault << "; the interval of " << name << " has a half width of " << allowed;
+            }
         }
         if (!(std::abs(error) <= allowed)) {
             fault << "; " << name << " is " << found->value << " instead of " << value << " ± " << allowed;

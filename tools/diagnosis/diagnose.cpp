@@ -55,14 +55,6 @@ void fit(DiagnosisWork& work, const FitOptions& how) {
     }
 }
 
-/// Lists the outputs with a predictable residual that matches no cause of the catalogue.
-void add_unexplained(DiagnosisWork& work) {
-    std::vector<Unexplained>& unexplained = work.diagnosis.unexplained;
-    unexplained = unnamed_dependences(*work.signals, work.measured, work.fitted_effects);
-    add_rest(unexplained,
-             unexplained_rest(*work.signals, work.measured, work.rest, work.fitted_effects.noise));
-}
-
 } // namespace
 
 Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOptions& options) {
@@ -129,7 +121,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     name_by_least_squares(work);
     work.diagnosis.nuisance_estimates = estimate_nuisances(*signals, work.fitted_effects, work.torque_gains);
     use_units_of_joints(work.diagnosis, robot);
-    add_unexplained(work);
+    set_unexplained(work);
     doubt_useless_findings(work.diagnosis);
     return work;
 }

@@ -47,6 +47,15 @@ bool moves(const Recording& recording) {
     return false;
 }
 
+/// Returns whether an output has steps of more than 1 % of its range. Its equal values are then no sign of a
+/// saturated or dead channel.
+bool coarse(const Recording& recording, std::size_t output) {
+    constexpr double coarsest = 0.01; // of the range
+    const auto column = columns_matrix(recording.output).col(static_cast<Eigen::Index>(output));
+    const std::optional<double> quantum = quantum_of({column.begin(), column.end()});
+    return quantum && *quantum > coarsest * travel(recording.output, output);
+}
+
 /// Rows of equal values of one output, without a gap.
 struct Run {
     std::size_t first = 0, count = 0;
@@ -78,15 +87,17 @@ double travel_in(const Recording& recording, const Run& run, std::size_t joint) 
     return largest - least;
 }
 
-/// Detects outputs that are constant for 2 s while their joint moves, but vary elsewhere.
+/// Detects outputs that are constant for 2 s while their joint moves, but vary elsewhere. In 10 s for outputs
+/// of coarse steps, which friction at a steady speed may keep constant.
 SetupFindings check_frozen_outputs(const Recording& recording, OutputKind outputs) {
-    constexpr double longest_s = 2;
+    constexpr double longest_fine_s = 2, longest_coarse_s = 10;
     SetupFindings findings;
     const Columns& columns = recording.output;
     for (std::size_t output = 0; outputs != OutputKind::wrench && output < columns.names.size(); ++output) {
         if (constant(columns, output)) {
             continue;
         }
+        const double longest_s = coarse(recording, output) ? longest_coarse_s : longest_fine_s;
         for (const Run& run : runs_of(recording, output, fewest_samples)) {
             const double from_s = recording.time_s[run.first];
             const double to_s = recording.time_s[run.first + run.count - 1];
@@ -167,7 +178,7 @@ SetupFindings check_saturated_outputs(const Recording& recording, OutputKind out
     SetupFindings findings;
     const Columns& columns = recording.output;
     for (std::size_t output = 0; outputs != OutputKind::wrench && output < columns.names.size(); ++output) {
-        if (constant(columns, output)) {
+        if (constant(columns, output) || coarse(recording, output)) {
             continue;
         }
         double low = cell(columns, 0, output);

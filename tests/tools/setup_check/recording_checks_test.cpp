@@ -5,6 +5,7 @@
 #include "tests/tools/setup_check/mistakes.hpp"
 #include "tools/robot/inertia.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -124,6 +125,29 @@ TEST_CASE("a constant output is a dead channel if its joint moves and other outp
     dead.output.values[1] = 0.26;
     check_single(check_dead_outputs(dead, OutputKind::joint_torque, nullptr), Severity::mistake,
                  "column tau2: expected values that vary, found 0.25 in every row from t");
+}
+
+TEST_CASE("outputs in steps of more than 1 % of their range are neither saturated nor dead") {
+    Recording rounded = swinging(); // 31 levels
+    change_outputs(rounded, [](double* tau) {
+        for (int i = 0; i < 2; ++i) {
+            tau[i] = 0.5 * std::round(2 * tau[i]);
+        }
+    });
+    CHECK(check_saturated_outputs(rounded, OutputKind::motor_current).empty());
+    CHECK(check_dead_outputs(rounded, OutputKind::motor_current, nullptr).empty());
+    for (std::size_t row = 500; row < 800; ++row) { // 3 s
+        rounded.output.values[2 * row] = 2.5;
+    }
+    CHECK(check_dead_outputs(rounded, OutputKind::motor_current, nullptr).empty());
+}
+
+TEST_CASE("an output that is clipped at a limit is saturated") {
+    Recording clipped = swinging();
+    change_outputs(clipped, [](double* tau) { tau[1] = std::min(tau[1], 5.0); });
+    check_single(check_saturated_outputs(clipped, OutputKind::joint_torque), Severity::mistake,
+                 "column tau2: expected values below the sensor's or the drive's limit, found 5");
+    CHECK(check_saturated_outputs(swinging(), OutputKind::joint_torque).empty());
 }
 
 TEST_CASE("a joint that moves no mass has no dead output") {

@@ -47,6 +47,8 @@ struct FittedModel {
     Eigen::MatrixXd friction;  ///< T x n: the joints' friction (N·m); no columns for a wrench
     Eigen::VectorXd delay_s;   ///< m: the output's delay in this model
     bool gains_may_err = true; ///< false: given gains are not doubted yet, or are unknown torque constants
+    /// roll, pitch and yaw (rad) of the F/T sensor in this model
+    Eigen::Vector3d sensor_angles = Eigen::Vector3d::Zero();
 };
 
 /// Residual of a fitted model, with its coefficients.
@@ -89,6 +91,7 @@ struct Effect {
     bool friction = false;      ///< joint friction, which friction_drift multiplies
     bool beyond_arm = false;    ///< acts on the measurement or from outside: not part of FittedModel::output
     bool delays_output = false; ///< its coefficient is the delay (s) of its outputs
+    bool turns_sensor = false;  ///< its columns' coefficients are the sensor's roll, pitch and yaw (rad)
     bool mass_of_link = false;  ///< small errors of all links' masses could explain it as well
     /// A chosen candidate is kept even when a later scan of the residual does not find it again.
     bool kept_while_chosen = false;

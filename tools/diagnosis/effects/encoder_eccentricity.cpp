@@ -55,7 +55,9 @@ Effect effects::encoder_eccentricity() {
             .each = Each::joint,
             .candidates =
                 [](const DiagnosisSignals& signals, std::size_t number) {
-                    return std::vector{eccentric_candidate(signals, number, 0, 0)};
+                    return signals.robot.joints[number].prismatic // a slide has no turns
+                               ? std::vector<Candidate>{}
+                               : std::vector{eccentric_candidate(signals, number, 0, 0)};
                 },
             .plotted_over = over_angle};
 }

@@ -135,7 +135,7 @@ class ContactScan : public EffectScan {
 /// Time, limited to the contact and the time before and after it.
 PlotAbscissa around_contact(const PlottedFinding& at) {
     PlotAbscissa variable = over_time(at);
-    const Eigen::VectorXd& time = variable.value;
+    const Eigen::VectorXd& time = at.signals.measured.time_s; // as the parameters, also for times since 1970
     const double start = at.parameter(contact_start.name);
     const double end = at.parameter(contact_end.name);
     const double margin = std::max(2.0, end - start);

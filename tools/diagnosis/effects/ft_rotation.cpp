@@ -14,21 +14,36 @@ namespace {
 constexpr std::array sensor_angles{ParameterKind{"roll", "rad"}, ParameterKind{"pitch", "rad"},
                                    ParameterKind{"yaw", "rad"}};
 
-/// Measured = rotation · true, for force and torque: roll, pitch, yaw about x, y, z.
+/// Roll, pitch, yaw about the fixed axes x, y, z.
+Eigen::Quaterniond sensor_rotation(double roll, double pitch, double yaw) {
+    return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+           Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+           Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
+}
+
+/// Measured = rotation · true, for force and torque.
+Eigen::MatrixXd turned(const Eigen::MatrixXd& wrench, const Eigen::Quaterniond& rotation) {
+    const Eigen::Matrix3d matrix = rotation.toRotationMatrix();
+    Eigen::MatrixXd result(wrench.rows(), 6);
+    result.leftCols<3>() = wrench.leftCols<3>() * matrix.transpose();
+    result.rightCols<3>() = wrench.rightCols<3>() * matrix.transpose();
+    return result;
+}
+
+/// Linearized about the angles of the model. With these angles as coefficients, the sum of the columns is
+/// exact.
 std::vector<Candidate> rotation_candidates(const DiagnosisSignals&, const FittedModel& model, std::size_t) {
     const Eigen::MatrixXd& wrench = model.output;
+    const Eigen::Vector3d along = model.sensor_angles.unaryExpr(&at_least_small);
     Candidate result;
     result.where = "ft_sensor";
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        Eigen::MatrixXd change(wrench.rows(), 6);
-        for (Eigen::Index row = 0; row < wrench.rows(); ++row) {
-            const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis);
-            const Eigen::Vector3d force = wrench.row(row).head<3>();
-            const Eigen::Vector3d torque = wrench.row(row).tail<3>();
-            change.row(row) << unit.cross(force).transpose(), unit.cross(torque).transpose();
-        }
-        result.columns.push_back(on_outputs(change));
-        result.shapes.push_back({{static_cast<std::size_t>(axis)}, up_to(0.6), 0});
+    const std::array<Eigen::MatrixXd, 4> steps{turned(wrench, sensor_rotation(along[0], along[1], along[2])),
+                                               turned(wrench, sensor_rotation(0, along[1], along[2])),
+                                               turned(wrench, sensor_rotation(0, 0, along[2])), wrench};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        result.columns.push_back(
+            on_outputs((steps[axis] - steps[axis + 1]) / along[static_cast<Eigen::Index>(axis)]));
+        result.shapes.push_back({{axis}, up_to(0.6), 0});
     }
     result.shapes.push_back(whole_shape(result, up_to(0.6)));
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
@@ -48,9 +63,7 @@ EffectDisposition extend_by_rotation(ModelExtension& extension, const ChosenEffe
         angles[static_cast<Eigen::Index>(chosen.shape.columns[static_cast<std::size_t>(i)])] =
             chosen.coefficients[i];
     }
-    const Eigen::Quaterniond rotation = Eigen::AngleAxisd(angles[2], Eigen::Vector3d::UnitZ()) *
-                                        Eigen::AngleAxisd(angles[1], Eigen::Vector3d::UnitY()) *
-                                        Eigen::AngleAxisd(angles[0], Eigen::Vector3d::UnitX());
+    const Eigen::Quaterniond rotation = sensor_rotation(angles[0], angles[1], angles[2]);
     extension.robot.sensor->placement.rotate(rotation.conjugate());
     return EffectDisposition::fixed;
 }
@@ -65,6 +78,7 @@ Effect effects::ft_rotation() {
             .experiment = "hang a known weight on the tool in three orientations of the sensor",
             .in_extended_model = "constant",
             .beyond_arm = true,
+            .turns_sensor = true,
             .each = Each::sensor,
             .fitted_candidates = rotation_candidates,
             .extend = extend_by_rotation};

@@ -85,6 +85,9 @@ class RippleScan : public EffectScan {
         const Eigen::MatrixXd weighted = weighted_residual(residual.regression, residual.named);
         std::vector<Candidate> result;
         for (std::size_t joint = 0; !signals.wrench() && joint < signals.joints(); ++joint) {
+            if (signals.robot.joints[joint].prismatic) {
+                continue; // a slide has no turns
+            }
             const std::vector<int> cycles = best_cycles(
                 ripple_gains(signals, residual.regression, weighted, static_cast<Eigen::Index>(joint)));
             if (!cycles.empty()) {

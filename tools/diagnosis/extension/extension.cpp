@@ -21,12 +21,27 @@ void add_nuisance(ModelExtension& extension, const DiagnosisWork& work) {
     const FittedEffects& fitted_effects = work.fitted_effects;
     const Eigen::Index bodies = fitted_effects.uncertain_masses;
     const auto count = static_cast<Eigen::Index>(fitted_effects.nuisance.size());
+    const Eigen::VectorXd nominal = nominal_parameters(work.signals->robot, work.signals->kind);
     for (Eigen::Index i = 0; i < count; ++i) {
         const double factor = fitted_effects.nuisance_factor(i);
         if (i < bodies) {
-            extension.bodies.segment<10>(10 * i) *= factor;
+            // a mass error is one of the robot's file, not of a payload on the link
+            extension.bodies.segment<10>(10 * i) += (factor - 1) * nominal.segment<10>(10 * i);
         } else {
             scale_output(extension, i - bodies, factor, false);
+        }
+    }
+}
+
+/// A gain multiplies what the arm does, and an effect beyond the arm is added after it. The firmware
+/// multiplies all columns by the gain, so that the columns of such effects are divided by it.
+void exclude_from_gain(ModelExtension& extension, const Eigen::VectorXd& nominal_gain) {
+    for (ExtensionColumn& column : extension.columns) {
+        const Effect* const effect = find_effect(column.effect.name);
+        if (effect != nullptr && effect->beyond_arm) {
+            const double gain = extension.output_gain[column.effect.row] / nominal_gain[column.effect.row];
+            column.value /= gain;
+            column.deviation /= gain;
         }
     }
 }
@@ -122,6 +137,7 @@ ModelExtension extension_of(const DiagnosisWork& work) {
         extension.carried.push_back(
             {effects::external_contact().name, numbered("joint", push.joint), EffectDisposition::left_out});
     }
+    exclude_from_gain(extension, work.torque_gains);
     add_nuisance(extension, work);
     take_least_squares(extension, work);
     sort_columns(extension);

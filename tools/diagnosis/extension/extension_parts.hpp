@@ -36,7 +36,7 @@ void add_column(ModelExtension& extension, const ChosenEffect& chosen, const Eff
 EffectDisposition add_single(ModelExtension& extension, const ChosenEffect& chosen, const EffectKind& kind);
 
 /// Applies the gain of an actuator or of a sensor axis. The gain multiplies everything that the model
-/// predicts on that output.
+/// predicts on that output, except effects beyond the arm (extension.cpp).
 EffectDisposition add_gain(ModelExtension& extension, const ChosenEffect& chosen);
 
 /// Multiplies the rigid body's part of an output. `effects_too`: also multiplies the output's columns.

@@ -85,7 +85,7 @@ std::string gain_sentence(const Diagnosis& diagnosis) {
     const Eigen::Index worst = worst_output(diagnosis.nominal);
     const double before = diagnosis.nominal.rms[worst];
     const double after = diagnosis.extended.rms[worst];
-    return std::string("On time that fitted nothing, the error with them is ")
+    return std::string("On time that fitted no effect, the error with them is ")
         .append(percent(diagnosis.extended.nrmse.minCoeff()))
         .append(" to ")
         .append(percent(diagnosis.extended.nrmse.maxCoeff()))
@@ -145,8 +145,9 @@ ReportTable error_table(const Diagnosis& diagnosis) {
     const bool held_out = has_held_out(diagnosis);
     table.note = held_out ? "On " + instant_text(diagnosis.heldout_from_s) + " to " +
                                 instant_text(diagnosis.heldout_to_s) +
-                                ", which neither chose nor fitted anything: the effects behind these figures "
-                                "were found in the time before."
+                                ", which fitted no effect: the effects behind these figures were found in "
+                                "the time before. The errors here only choose, per output, between them and "
+                                "plain least squares."
                           : "Over " + diagnosis.scope + ", which the extended model was fitted to.";
     for (std::size_t k = 0; k < diagnosis.output_names.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);

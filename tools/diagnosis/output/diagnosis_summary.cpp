@@ -43,7 +43,7 @@ void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
     out << "error, rms and share of the output's deviation, ";
     if (held_out) {
         out << "on held-out time (" << instant_text(diagnosis.heldout_from_s) << " to "
-            << instant_text(diagnosis.heldout_to_s) << " fitted nothing):\n";
+            << instant_text(diagnosis.heldout_to_s) << " fitted no effect):\n";
     } else {
         out << "over " << diagnosis.scope << ":\n";
     }

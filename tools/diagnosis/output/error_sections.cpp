@@ -8,11 +8,12 @@
 #include "tools/diagnosis/output/finding_words.hpp"
 #include "tools/diagnosis/output/over_time.hpp"
 #include "tools/diagnosis/signals/spectral_rows.hpp"
-#include "tools/report/chart.hpp"
 #include "tools/report/xy_chart.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -56,24 +57,11 @@ double autocorrelation(const DiagnosisSignals& signals, const Eigen::VectorXd& s
     return square > 0 ? product / square : 0;
 }
 
-ChartCurve spectrum(const SpectralRows& rows, std::string name, const Eigen::MatrixXd& error,
-                    Eigen::Index output) {
-    const Eigen::VectorXd variance = noise_spectrum(rows.analyse(error.col(output), output),
-                                                    rows.filled(output), Eigen::VectorXd::Zero(rows.bins()));
-    ChartCurve curve{std::move(name), {}, {}, {}, {}};
-    for (Eigen::Index bin = 0; bin < variance.size(); ++bin) {
-        curve.x.push_back(rows.frequency_hz(bin));
-        curve.y.push_back(std::sqrt(variance[bin]));
-    }
-    curve.low = curve.high = curve.y;
-    return curve;
-}
-
-/// Level of white noise: the median over the upper half of the band, where the motion has no energy.
+/// The median over the upper half of the curve: the level of white noise, where the motion has no energy.
 ChartCurve white_level(const ChartCurve& rest) {
     const auto half = static_cast<std::ptrdiff_t>(rest.y.size() / 2);
     const double level = median({rest.y.begin() + half, rest.y.end()});
-    ChartCurve curve{"white noise of the upper band", rest.x, {}, {}, {}};
+    ChartCurve curve{"median of the upper half", rest.x, {}, {}, {}};
     curve.y.assign(rest.x.size(), level);
     curve.low = curve.high = curve.y;
     return curve;
@@ -117,6 +105,23 @@ ReportTable unexplained_table(const Diagnosis& diagnosis) {
 }
 
 } // namespace
+
+ChartCurve error_spectrum(const MeasuredMotion& measured, std::string name, const Eigen::VectorXd& error,
+                          Eigen::Index output) {
+    constexpr double least_power = 1e-300; // on a logarithmic axis
+    const SpectralRows rows(measured);
+    const double highest_hz = measured.answered_hz.size() > 0 ? measured.answered_hz[output]
+                                                              : std::numeric_limits<double>::infinity();
+    const double frames = std::max(rows.filled(output).sum(), 1e-9);
+    const Eigen::VectorXd power = rows.analyse(error, output).rowwise().squaredNorm() / frames;
+    ChartCurve curve{std::move(name), {}, {}, {}, {}};
+    for (Eigen::Index bin = 0; bin < power.size() && rows.frequency_hz(bin) <= highest_hz; ++bin) {
+        curve.x.push_back(rows.frequency_hz(bin));
+        curve.y.push_back(std::sqrt(std::max(power[bin], least_power)));
+    }
+    curve.low = curve.high = curve.y;
+    return curve;
+}
 
 ComparedOutputs compared_outputs(const DiagnosisWork& work) {
     const Eigen::MatrixXd simulated = in_output_units(work, work.signals->nominal);
@@ -189,16 +194,17 @@ PageSection rest_section(const DiagnosisWork& work) {
     if (!work.diagnosis.unexplained.empty()) {
         section.tables.push_back(unexplained_table(work.diagnosis));
     }
-    const SpectralRows rows(work.signals->measured);
+    const MeasuredMotion& measured = work.signals->measured;
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
         const std::string& unit = work.diagnosis.output_units[static_cast<std::size_t>(output)];
-        const ChartCurve left = spectrum(rows, "extended", rest, output);
+        const ChartCurve left = error_spectrum(measured, "extended", rest.col(output), output);
         section.charts.push_back(
             {"spectrum_" + name, name,
              curve_chart(std::string("spectrum of the error of ").append(name), "frequency (Hz)",
                          std::string("per bin (").append(unit).append(")"),
-                         {white_level(left), spectrum(rows, "simulated", nominal, output), left})});
+                         {white_level(left),
+                          error_spectrum(measured, "simulated", nominal.col(output), output), left})});
     }
     return section;
 }

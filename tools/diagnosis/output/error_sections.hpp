@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/diagnosis/diagnosis.hpp"
+#include "tools/report/chart.hpp"
 #include "tools/report/figure_page.hpp"
 
 #include <Eigen/Core>
@@ -27,6 +28,11 @@ void write_comparison_csv(std::ostream& out, const DiagnosisWork& work);
 /// Measured, simulated and extended outputs over a time window, and the errors of both models, per output.
 /// `full_data`: name of the file from `write_comparison_csv` in the page's folder; empty: none.
 PageSection comparison_section(const DiagnosisWork& work, const std::string& full_data);
+
+/// Returns the root mean square per bin of an output's error (T), up to the highest frequency of its motion
+/// that the output answers to.
+ChartCurve error_spectrum(const MeasuredMotion& measured, std::string name, const Eigen::VectorXd& error,
+                          Eigen::Index output);
 
 /// Spectra of the errors, whiteness of the residual, and its remaining dependences.
 PageSection rest_section(const DiagnosisWork& work);

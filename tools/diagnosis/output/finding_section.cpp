@@ -123,8 +123,6 @@ PageSection finding_section(const DiagnosisWork& work, const Finding& finding, s
                                      .append(confidence_text(finding.confidence))
                                      .append(": ")
                                      .append(finding.evidence)
-                                     .append(" ")
-                                     .append(unit_of(work, finding))
                                      .append("."));
     if (!finding.indistinguishable.empty()) {
         section.paragraphs.push_back(tie_sentence(finding));

@@ -3,7 +3,7 @@
 
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/output/over_time.hpp"
-#include "tools/diagnosis/verdict/joint_units.hpp"
+#include "tools/robot/joint_unit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -179,7 +179,8 @@ void add_missing(Diagnosis& diagnosis, const Eigen::VectorXd& time_s, const Seve
                  (fitted
                       ? " has longer time steps than the others: it contributes to the common values, but no "
                         "cause was sought in it"
-                      : " has no two seconds without a gap, and does not contribute to the common values")});
+                      : " has no two seconds without a gap, or its rows are more than 0.2 s apart: it "
+                        "does not contribute to the common values")});
         }
         before = end;
     }

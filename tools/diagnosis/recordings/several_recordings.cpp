@@ -3,6 +3,7 @@
 
 #include "tools/base/text/error.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
+#include "tools/diagnosis/verdict/plausibility.hpp"
 #include "tools/diagnosis/verdict/textbook.hpp"
 
 #include <algorithm>
@@ -18,9 +19,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Returns the signals of a recording, or nothing if it is too short.
+/// Returns the signals of a recording, or nothing if it is too short or its rows are too far apart.
 std::optional<DiagnosisSignals> signals_of_recording(const Robot& robot, OutputKind outputs,
                                                      const Recording& recording) {
+    if (!usable_rate(recording)) {
+        return std::nullopt;
+    }
     try {
         return diagnosis_signals(robot, outputs, measured_motion(recording));
     } catch (const InputError&) {

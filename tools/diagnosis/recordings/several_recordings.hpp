@@ -17,13 +17,13 @@ struct SeveralRecordings {
     Eigen::VectorXd torque_gains;    ///< per output: measured unit per N·m (N)
     double seconds = 0;              ///< duration of all pooled recordings
 
-    /// Returns whether there is a fit: at least two recordings have a long enough segment.
+    /// Returns whether there is a fit: at least two recordings can be used.
     bool answered() const { return pooled.size() > 1; }
 };
 
 /// Fits several recordings at once, each with its own clock, filters and noise. There is no fit for fewer
-/// than two recordings and for wrenches. Recordings without a segment that is long enough are left out. Cost:
-/// `information_of` per recording, and `ask_recordings`.
+/// than two recordings and for wrenches. Recordings without a segment that is long enough or with rows more
+/// than 0.2 s apart are left out. Cost: `information_of` per recording, and `ask_recordings`.
 SeveralRecordings fit_recordings(const Robot& robot, const std::vector<Recording>& recordings,
                                  const DiagnosisOptions& options, bool loads_differ);
 

@@ -137,6 +137,13 @@ FittedModel Search::fitted_model(bool gains_may_err) const {
                 model.delay_s[part.output] = result_.fit.coefficients[result_.first_column(i)];
             }
         }
+        if (has_trait(candidate.effect, &Effect::turns_sensor)) {
+            Eigen::Index coefficient = result_.first_column(i);
+            for (const std::size_t axis : candidate.shapes[result_.chosen[i].shape].columns) {
+                model.sensor_angles[static_cast<Eigen::Index>(axis)] =
+                    result_.fit.coefficients[coefficient++];
+            }
+        }
     }
     return model;
 }

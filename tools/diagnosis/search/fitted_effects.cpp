@@ -18,7 +18,7 @@ void accumulate(Eigen::MatrixXd& sum, double coefficient, const EffectColumn& co
 
 double FittedEffects::nuisance_factor(Eigen::Index number) const {
     constexpr double least = 0.1;
-    const double factor = 1 + fit.coefficients[number];
+    const double factor = 1 + values.coefficients[number];
     return factor > least ? factor : 1;
 }
 

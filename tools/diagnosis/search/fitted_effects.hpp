@@ -55,7 +55,7 @@ struct FittedEffects {
     /// Returns the chosen effects that have a name, which are those of the fit `named`.
     std::vector<ChosenShape> named_effects() const;
 
-    /// Returns the factor of a nuisance body or gain by `fit`; 1 if the estimate is below 0.1.
+    /// Returns the factor of a nuisance body or gain by `values`; 1 if the estimate is below 0.1.
     double nuisance_factor(Eigen::Index number) const;
 
     /// Index of the first column of a chosen candidate, in both fits.

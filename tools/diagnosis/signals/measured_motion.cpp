@@ -5,6 +5,7 @@
 #include "tools/base/recording/columns_matrix.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
+#include "tools/diagnosis/signals/cubic_weights.hpp"
 #include "tools/diagnosis/signals/low_pass_kernel.hpp"
 #include "tools/diagnosis/signals/position_noise.hpp"
 
@@ -18,21 +19,6 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double highest_rate_hz = 130;
-
-/// Weights of the four samples from `first` on for cubic (Lagrange) interpolation at `time_s`.
-Eigen::Vector4d cubic_weights(const Recording& recording, std::size_t first, double time_s) {
-    Eigen::Vector4d weights = Eigen::Vector4d::Ones();
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; j < 4; ++j) {
-            if (i != j) {
-                weights[static_cast<Eigen::Index>(i)] *=
-                    (time_s - recording.time_s[first + j]) /
-                    (recording.time_s[first + i] - recording.time_s[first + j]);
-            }
-        }
-    }
-    return weights;
-}
 
 /// All signals of a segment on a uniform clock.
 struct Resampled {
@@ -57,11 +43,12 @@ Resampled resampled(const Recording& recording, const Stretch& stretch, double s
             ++next;
         }
         const std::size_t first = std::clamp(next < begin + 2 ? begin : next - 2, begin, end - 4);
-        const Eigen::Vector4d weights = cubic_weights(recording, first, time_s);
         const auto at = static_cast<Eigen::Index>(first);
+        const Eigen::RowVector4d weights =
+            cubic_weights(Eigen::Map<const Eigen::Vector4d>(&recording.time_s[first]), time_s);
         result.time_s[row] = time_s;
-        result.position.row(row) = weights.transpose() * position.middleRows(at, 4);
-        result.output.row(row) = weights.transpose() * output.middleRows(at, 4);
+        result.position.row(row) = weights * position.middleRows(at, 4);
+        result.output.row(row) = weights * output.middleRows(at, 4);
     }
     return result;
 }
@@ -119,15 +106,17 @@ void append(MeasuredMotion& result, const Resampled& stretch, double rate_hz, Ei
 
 MeasuredMotion measured_motion(const Recording& recording) {
     const double step = median_step_s(recording);
+    constexpr Eigen::Index fewest_rows = 4; // of the cubic interpolation
     std::vector<Resampled> stretches;
     for (const Stretch& stretch : recorded_stretches(recording)) {
-        if (static_cast<double>(stretch.count) * step >= MeasuredMotion::shortest_stretch_s) {
+        if (stretch.count >= fewest_rows &&
+            static_cast<double>(stretch.count) * step >= MeasuredMotion::shortest_stretch_s) {
             stretches.push_back(resampled(recording, stretch, step));
         }
     }
     if (stretches.empty()) {
         throw InputError(recording.source + ": expected " + number_text(MeasuredMotion::shortest_stretch_s) +
-                         " s without a gap, found less");
+                         " s and four rows without a gap, found less");
     }
     const double rate_hz = 1 / step;
     const PositionNoise noise = noise_of(recording, stretches, rate_hz);

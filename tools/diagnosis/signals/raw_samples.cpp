@@ -2,29 +2,13 @@
 #include "tools/diagnosis/signals/raw_samples.hpp"
 
 #include "tools/base/recording/columns_matrix.hpp"
+#include "tools/diagnosis/signals/cubic_weights.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace dfdyn::tools {
-
-namespace {
-
-/// Weights of four rows a step apart for cubic (Lagrange) interpolation `at` steps after the first.
-Eigen::RowVector4d cubic_weights(double at) {
-    Eigen::RowVector4d weights = Eigen::RowVector4d::Ones();
-    for (int i = 0; i < 4; ++i) {
-        for (int j = 0; j < 4; ++j) {
-            if (i != j) {
-                weights[i] *= (at - j) / (i - j);
-            }
-        }
-    }
-    return weights;
-}
-
-} // namespace
 
 Eigen::MatrixXd RawSamples::at(const Eigen::MatrixXd& series) const {
     Eigen::MatrixXd result(outputs.rows(), series.cols());
@@ -66,7 +50,7 @@ RawSamples raw_samples(const Recording& recording, const MeasuredMotion& measure
                 std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::floor(at)) - 1, 0, stretch.count - 4);
             used.push_back(static_cast<Eigen::Index>(row));
             samples.rows.push_back(stretch.first + first);
-            weights.push_back(cubic_weights(at - static_cast<double>(first)));
+            weights.push_back(cubic_weights({0, 1, 2, 3}, at - static_cast<double>(first)));
         }
     }
     samples.outputs = columns_matrix(recording.output)(used, Eigen::all);

@@ -9,7 +9,8 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double presliding_travel = 3e-3;         ///< rad (m)
+constexpr double presliding_travel_rad = 3e-3;
+constexpr double presliding_travel_m = 3e-4;
 constexpr double standing_s = 0.3;                 ///< shortest standstill
 constexpr double fade_s = 0.1;                     ///< ramp between weights 0 and 1
 constexpr double longest_end_s = 2;                ///< longest ramp at the ends of a segment
@@ -27,7 +28,8 @@ Eigen::Index rows_of(const MeasuredMotion& measured, double time_s) {
 }
 
 /// Marks the rows within any window of `standing_s` in which the joint travels less than `presliding_travel`.
-std::vector<bool> stationary_rows(const MeasuredMotion& measured, Eigen::Index joint) {
+std::vector<bool> stationary_rows(const MeasuredMotion& measured, Eigen::Index joint,
+                                  double presliding_travel) {
     const Eigen::Index window = rows_of(measured, standing_s);
     std::vector<bool> standing(static_cast<std::size_t>(measured.time_s.size()), false);
     for (const Stretch& stretch : measured.stretches) {
@@ -46,7 +48,8 @@ std::vector<bool> stationary_rows(const MeasuredMotion& measured, Eigen::Index j
 /// torque and of the mean of each standstill. Relative to the standard deviation of the output.
 double standstill_deviation(const std::vector<bool>& standing, const Eigen::VectorXd& output,
                             const Eigen::VectorXd& torque) {
-    const Eigen::VectorXd error = output - output.dot(torque) / torque.squaredNorm() * torque;
+    const double square = torque.squaredNorm(); // 0 at a joint that moves no mass
+    const Eigen::VectorXd error = output - (square > 0 ? output.dot(torque) / square : 0) * torque;
     double squares = 0;
     double rows = 0;
     for (Eigen::Index first = 0; first < error.size();) {
@@ -83,8 +86,9 @@ Eigen::VectorXd ramped_weight(const std::vector<bool>& off, Eigen::Index fade) {
 }
 
 Eigen::VectorXd moving_weight(const MeasuredMotion& measured, const Eigen::MatrixXd& torques,
-                              Eigen::Index joint) {
-    const std::vector<bool> standing = stationary_rows(measured, joint);
+                              Eigen::Index joint, bool prismatic) {
+    const std::vector<bool> standing =
+        stationary_rows(measured, joint, prismatic ? presliding_travel_m : presliding_travel_rad);
     const double moving = static_cast<double>(std::ranges::count(standing, false));
     if (moving < least_moving * static_cast<double>(standing.size()) ||
         standstill_deviation(standing, measured.outputs.col(joint), torques.col(joint)) <
@@ -109,11 +113,13 @@ Eigen::VectorXd end_row_weight(const MeasuredMotion& measured) {
     return weight;
 }
 
-Eigen::MatrixXd joint_row_weight(const MeasuredMotion& measured, const Eigen::MatrixXd& torques) {
+Eigen::MatrixXd joint_row_weight(const Robot& robot, const MeasuredMotion& measured,
+                                 const Eigen::MatrixXd& torques) {
     const Eigen::VectorXd ends = end_row_weight(measured);
     Eigen::MatrixXd weight(ends.size(), measured.motion.position.cols());
     for (Eigen::Index joint = 0; joint < weight.cols(); ++joint) {
-        weight.col(joint) = ends.cwiseProduct(moving_weight(measured, torques, joint));
+        const bool prismatic = robot.joints[static_cast<std::size_t>(joint)].prismatic;
+        weight.col(joint) = ends.cwiseProduct(moving_weight(measured, torques, joint, prismatic));
     }
     return weight;
 }

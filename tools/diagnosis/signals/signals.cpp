@@ -88,7 +88,7 @@ DiagnosisSignals diagnosis_signals(const Robot& robot, OutputKind kind, Measured
     signals.joint_torque =
         signals.wrench() ? rigid_outputs(robot, OutputKind::joint_torque, motion) : signals.nominal;
     signals.measured.weight = signals.wrench() ? end_row_weight(signals.measured).replicate(1, 6).eval()
-                                               : joint_row_weight(signals.measured, signals.nominal);
+                                               : joint_row_weight(robot, signals.measured, signals.nominal);
     signals.regressor = stacked_regressor(robot, kind, motion);
     signals.joint_inertia = joint_inertias(robot, motion);
     signals.sensitivity = motion_sensitivity(robot, kind, motion);

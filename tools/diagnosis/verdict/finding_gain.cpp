@@ -4,6 +4,7 @@
 #include "tools/base/numerics/root_mean_square.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/verdict/joint_units.hpp"
 
 namespace dfdyn::tools {
 
@@ -47,10 +48,13 @@ bool Gains::tell(Finding& finding, const Eigen::MatrixXd& contribution) const {
     }
     finding.share = contribution.col(finding.output);
     finding.rest = rest_.col(finding.output);
-    finding.evidence = "the error of " + output_names_[static_cast<std::size_t>(finding.output)] + " " +
-                       effect_named(finding.effect).evidence + ": with it the error" + band + " falls from " +
-                       rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after);
-    return finding.rms_after < finding.rms_before;
+    const auto output = static_cast<std::size_t>(finding.output);
+    const bool falls = finding.rms_after < finding.rms_before;
+    finding.evidence = "the error of " + output_names_[output] + " " + effect_named(finding.effect).evidence +
+                       ": with it the error" + band + (falls ? " falls" : " rises") + " from " +
+                       rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after) + " " +
+                       torque_unit(signals_.robot, signals_.wrench(), output);
+    return falls;
 }
 
 } // namespace dfdyn::tools

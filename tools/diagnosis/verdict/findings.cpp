@@ -8,7 +8,7 @@
 #include "tools/diagnosis/search/candidate_choice.hpp"
 #include "tools/diagnosis/verdict/finding_gain.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
-#include "tools/diagnosis/verdict/joint_units.hpp"
+#include "tools/robot/joint_unit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/verdict/joint_units.hpp"
 
+#include "tools/robot/joint_unit.hpp"
+
 #include <algorithm>
 #include <array>
-#include <utility>
 
 namespace dfdyn::tools {
 
@@ -20,27 +21,15 @@ bool at_prismatic_joint(const std::string& where, const Robot& robot) {
 
 } // namespace
 
-std::string unit_at_joint(const std::string& unit, bool prismatic) {
-    static constexpr std::array<std::pair<const char*, const char*>, 9> units{{{"N·m·s/rad", "N·s/m"},
-                                                                               {"N·m/rad", "N/m"},
-                                                                               {"N·m/A", "N/A"},
-                                                                               {"N·m/s", "N/s"},
-                                                                               {"N·m", "N"},
-                                                                               {"rad/s²", "m/s²"},
-                                                                               {"rad/s", "m/s"},
-                                                                               {"rad", "m"},
-                                                                               {"kg·m²", "kg"}}};
-    const auto* const found =
-        std::ranges::find_if(units, [&](const auto& entry) { return unit == entry.first; });
-    return prismatic && found != units.end() ? found->second : unit;
+std::string torque_unit(const Robot& robot, bool wrench, std::size_t output) {
+    return unit_at_joint("N·m", wrench ? output < 3 : robot.joints.at(output).prismatic);
 }
 
 void set_output_units(Diagnosis& diagnosis, const Robot& robot, OutputKind outputs) {
     diagnosis.output_units.clear();
     diagnosis.torque_units.clear();
     for (std::size_t output = 0; output < diagnosis.output_names.size(); ++output) {
-        const bool force = outputs == OutputKind::wrench ? output < 3 : robot.joints.at(output).prismatic;
-        diagnosis.torque_units.emplace_back(force ? "N" : "N·m");
+        diagnosis.torque_units.push_back(torque_unit(robot, outputs == OutputKind::wrench, output));
         diagnosis.output_units.push_back(
             outputs == OutputKind::motor_current ? "A" : diagnosis.torque_units.back());
     }

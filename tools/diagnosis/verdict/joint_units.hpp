@@ -5,9 +5,8 @@
 
 namespace dfdyn::tools {
 
-/// Returns the unit at a joint of a quantity whose unit at a revolute joint is `unit`: N·m becomes N at a
-/// prismatic joint, rad becomes m, kg·m² becomes kg.
-std::string unit_at_joint(const std::string& unit, bool prismatic);
+/// Returns the unit of a torque at output number `output`.
+std::string torque_unit(const Robot& robot, bool wrench, std::size_t output);
 
 /// Sets the units of the outputs.
 void set_output_units(Diagnosis& diagnosis, const Robot& robot, OutputKind outputs);

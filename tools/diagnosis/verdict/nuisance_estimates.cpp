@@ -40,7 +40,7 @@ std::vector<NuisanceEstimate> estimate_nuisances(const DiagnosisSignals& signals
     std::vector<NuisanceEstimate> result;
     for (Eigen::Index i = 0; i < std::ssize(fitted_effects.nuisance); ++i) {
         const double factor = fitted_effects.nuisance_factor(i);
-        const double reach = factor_reach(fitted_effects.fit, i);
+        const double reach = factor_reach(fitted_effects.values, i);
         if (i < bodies) {
             const double mass = nominal[10 * i];
             result.push_back(

@@ -15,14 +15,15 @@ namespace {
 
 constexpr double least_duration_s = 3;
 
-/// The diagnosis filters at a few Hz and needs a sufficient sampling rate.
+// the diagnosis filters at a few Hz and needs a sufficient sampling rate
+constexpr double longest_step_s = 0.2;
+constexpr double shortest_step_s = 2e-5;
+
 void suspect_rate(const Recording& recording, std::vector<Suspicion>& result) {
-    constexpr double longest_step_s = 0.2;
-    constexpr double shortest_step_s = 2e-5;
-    const double step = recording.row_count() < 2 ? longest_step_s : median_step_s(recording);
-    if (step > longest_step_s || step < shortest_step_s) {
-        result.push_back({"rows are " + rounded_text(step) + " s apart: a diagnosis needs " +
-                              rounded_text(shortest_step_s) + " to " + rounded_text(longest_step_s) + " s",
+    if (recording.row_count() >= 2 && !usable_rate(recording)) {
+        result.push_back({"rows are " + rounded_text(median_step_s(recording)) +
+                              " s apart: a diagnosis needs " + rounded_text(shortest_step_s) + " to " +
+                              rounded_text(longest_step_s) + " s",
                           "clock", "t"});
     }
 }
@@ -58,9 +59,12 @@ void suspect_standstill(const DiagnosisSignals& signals, const Recording& record
     }
 }
 
-/// Returns means of blocks of 0.2 s, in which noise averages out and motion hardly does.
-Eigen::MatrixXd block_means(const Eigen::MatrixXd& rows, double rate_hz) {
-    const auto size = std::max(Eigen::Index{1}, static_cast<Eigen::Index>(0.2 * rate_hz));
+/// Rows of a block of 0.2 s, in which noise averages out and motion hardly does.
+Eigen::Index block_rows(const DiagnosisSignals& signals) {
+    return std::max(Eigen::Index{1}, static_cast<Eigen::Index>(0.2 * signals.measured.rate_hz));
+}
+
+Eigen::MatrixXd block_means(const Eigen::MatrixXd& rows, Eigen::Index size) {
     Eigen::MatrixXd means(rows.rows() / size, rows.cols());
     for (Eigen::Index block = 0; block < means.rows(); ++block) {
         means.row(block) = rows.middleRows(block * size, size).colwise().mean();
@@ -68,28 +72,54 @@ Eigen::MatrixXd block_means(const Eigen::MatrixXd& rows, double rate_hz) {
     return means;
 }
 
-/// Share of the outputs' variance between blocks that remains after a fit of the rigid body, a friction and a
-/// spring per output.
-double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
-    const double rate_hz = signals.measured.rate_hz;
-    double share = 0;
-    for (Eigen::Index output = 0; output < measured.cols(); ++output) {
-        Eigen::MatrixXd columns(measured.rows(), signals.wrench() ? 2 : 5);
-        columns.col(0).setOnes();
-        columns.col(1) = signals.nominal.col(output);
-        if (!signals.wrench()) {
-            const RobotMotion& motion = signals.measured.motion;
-            columns.col(2) = motion.position.col(output);
-            columns.col(3) = motion.velocity.col(output);
-            columns.col(4) = signals.direction(output);
-        }
-        const Eigen::VectorXd means = block_means(measured.col(output), rate_hz);
-        const Eigen::VectorXd centred = means.array() - means.mean();
-        const Eigen::MatrixXd shapes = block_means(columns, rate_hz);
-        const Eigen::VectorXd fit = least_squares(shapes, centred);
-        share += (centred - shapes * fit).squaredNorm() / centred.squaredNorm();
+/// Energy that white noise gives to the `means` of blocks, from the variance of the rows within the blocks.
+double white_noise_energy(const Eigen::VectorXd& rows, const Eigen::VectorXd& means, Eigen::Index size) {
+    if (size < 2) {
+        return 0;
     }
-    return share / static_cast<double>(measured.cols());
+    const auto count = static_cast<double>(size);
+    const double within = rows.head(means.size() * size).squaredNorm() - count * means.squaredNorm();
+    return std::max(0.0, within) / (count * (count - 1));
+}
+
+/// Rigid body, friction and spring of an output.
+Eigen::MatrixXd own_columns(const DiagnosisSignals& signals, Eigen::Index output) {
+    Eigen::MatrixXd columns(signals.rows(), signals.wrench() ? 2 : 5);
+    columns.col(0).setOnes();
+    columns.col(1) = signals.nominal.col(output);
+    if (!signals.wrench()) {
+        const RobotMotion& motion = signals.measured.motion;
+        columns.col(2) = motion.position.col(output);
+        columns.col(3) = motion.velocity.col(output);
+        columns.col(4) = signals.direction(output);
+    }
+    return columns;
+}
+
+/// Share of the outputs' variance between blocks that neither white noise nor a fit of the rigid body, a
+/// friction and a spring explains. Outputs of joints at rest and constant outputs show no model and are
+/// skipped.
+double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
+    constexpr double rounding = 1e-18; // of the squared size
+    const Eigen::Index size = block_rows(signals);
+    double share = 0;
+    int counted = 0;
+    for (Eigen::Index output = 0; output < measured.cols(); ++output) {
+        const Eigen::VectorXd means = block_means(measured.col(output), size);
+        const double varied = (means.array() - means.mean()).square().sum();
+        const bool at_rest = !signals.wrench() && signals.hardly_moves(static_cast<std::size_t>(output));
+        if (at_rest || !(varied > rounding * means.squaredNorm())) {
+            continue;
+        }
+        const Eigen::MatrixXd columns = own_columns(signals, output);
+        const Eigen::VectorXd fit = least_squares(block_means(columns, size), means);
+        const Eigen::VectorXd left = measured.col(output) - columns * fit;
+        const Eigen::VectorXd left_means = block_means(left, size);
+        share +=
+            std::max(0.0, left_means.squaredNorm() - white_noise_energy(left, left_means, size)) / varied;
+        ++counted;
+    }
+    return counted > 0 ? share / counted : 0;
 }
 
 void suspect_robot(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
@@ -104,6 +134,11 @@ void suspect_robot(const DiagnosisSignals& signals, const Eigen::MatrixXd& measu
 }
 
 } // namespace
+
+bool usable_rate(const Recording& recording) {
+    const double step_s = median_step_s(recording);
+    return step_s >= shortest_step_s && step_s <= longest_step_s;
+}
 
 std::vector<Suspicion> suspicions_of_file(const Recording& recording) {
     std::vector<Suspicion> result;

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -26,15 +27,16 @@ struct InputFunctions {
 
 using Series = std::vector<Eigen::VectorXd>;
 
-InputFunctions functions(const SpectralRows& rows, std::vector<std::string> names, const Series& series) {
-    InputFunctions result{std::move(names), {}};
-    for (const Eigen::VectorXd& one : series) {
-        result.rows.push_back(rows.analyse(one));
-    }
-    return result;
-}
-
-std::vector<InputFunctions> all_functions(const DiagnosisSignals& signals, const SpectralRows& rows) {
+/// All smooth functions, with the weights and the bandwidth of `output`, as its residual.
+std::vector<InputFunctions> all_functions(const DiagnosisSignals& signals, const SpectralRows& rows,
+                                          Eigen::Index output) {
+    const auto functions = [&](std::vector<std::string> names, const Series& series) {
+        InputFunctions one{std::move(names), {}};
+        for (const Eigen::VectorXd& function : series) {
+            one.rows.push_back(rows.analyse(function, output));
+        }
+        return one;
+    };
     std::vector<InputFunctions> result;
     const RobotMotion& motion = signals.measured.motion;
     for (Eigen::Index joint = 0; joint < motion.position.cols(); ++joint) {
@@ -43,18 +45,37 @@ std::vector<InputFunctions> all_functions(const DiagnosisSignals& signals, const
         const std::string velocity = "qd" + number;
         const Series of_position = harmonics(motion.position.col(joint), 3);
         const Series of_velocity = harmonics(motion.velocity.col(joint), 3);
-        result.push_back(functions(rows, {position}, of_position));
-        result.push_back(functions(rows, {velocity}, of_velocity));
-        result.push_back(functions(rows, {"qdd" + number}, harmonics(motion.acceleration.col(joint), 2)));
+        result.push_back(functions({position}, of_position));
+        result.push_back(functions({velocity}, of_velocity));
+        result.push_back(functions({"qdd" + number}, harmonics(motion.acceleration.col(joint), 2)));
         Series products;
         for (std::size_t i = 0; i < 4; ++i) {
             for (std::size_t k = 0; k < 4; ++k) {
                 products.emplace_back(of_position[i].cwiseProduct(of_velocity[k]));
             }
         }
-        result.push_back(functions(rows, {position, velocity}, products));
+        result.push_back(functions({position, velocity}, products));
     }
     return result;
+}
+
+using BlockEdges = std::array<Eigen::Index, blocks + 1>;
+
+/// Returns the first frame of each block, and the end. All blocks have about the same weight, so that each
+/// shows a dependence also if the joint stands for long.
+BlockEdges block_edges(const Eigen::RowVectorXd& filled) {
+    BlockEdges edges{};
+    double before = 0;
+    Eigen::Index frame = 0;
+    for (std::size_t block = 1; block < blocks; ++block) {
+        const double wanted = filled.sum() * static_cast<double>(block) / blocks;
+        while (frame < filled.size() && before + filled[frame] / 2 < wanted) {
+            before += filled[frame++];
+        }
+        edges[block] = frame;
+    }
+    edges.back() = filled.size();
+    return edges;
 }
 
 /// Normal equations of each block of time.
@@ -65,13 +86,12 @@ struct BlockSums {
 };
 
 BlockSums block_sums(const std::vector<const Eigen::MatrixXd*>& columns, const Eigen::MatrixXd& target,
-                     const Eigen::VectorXd& noise) {
+                     const Eigen::VectorXd& noise, const BlockEdges& edges) {
     BlockSums sums;
     const Eigen::VectorXd weight = noise.cwiseSqrt().cwiseInverse();
-    const Eigen::Index frames = target.cols();
-    for (Eigen::Index block = 0; block < blocks; ++block) {
-        const Eigen::Index first = block * frames / blocks;
-        const Eigen::Index count = (block + 1) * frames / blocks - first;
+    for (std::size_t block = 0; block < blocks; ++block) {
+        const Eigen::Index first = edges[block];
+        const Eigen::Index count = edges[block + 1] - first;
         Eigen::MatrixXd matrix(target.rows() * count, static_cast<Eigen::Index>(columns.size()));
         for (std::size_t i = 0; i < columns.size(); ++i) {
             const Eigen::MatrixXd part = weight.asDiagonal() * columns[i]->middleCols(first, count);
@@ -170,7 +190,7 @@ struct FoundInputs {
 
 /// Forward selection of inputs, while their model improves the prediction of held-out blocks.
 FoundInputs inputs_of_rest(const std::vector<InputFunctions>& candidates, const Eigen::MatrixXd& target,
-                           const Eigen::VectorXd& noise, Eigen::Index output) {
+                           const Eigen::VectorXd& noise, const BlockEdges& edges, Eigen::Index output) {
     FoundInputs found{.entry = {output, 0, {}, {}}};
     std::vector<const Eigen::MatrixXd*> chosen;
     for (std::size_t step = 0; step < most_inputs; ++step) {
@@ -181,7 +201,7 @@ FoundInputs inputs_of_rest(const std::vector<InputFunctions>& candidates, const 
             for (const Eigen::MatrixXd& column : candidate.rows) {
                 columns.push_back(&column);
             }
-            const Eigen::VectorXd with = held_out_gains(block_sums(columns, target, noise));
+            const Eigen::VectorXd with = held_out_gains(block_sums(columns, target, noise, edges));
             if (with.sum() > best.sum() && certain(with - found.gains)) {
                 best = with;
                 added = &candidate;
@@ -208,10 +228,11 @@ std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const
     if (rows.frames() < 2 * blocks) {
         return result;
     }
-    const std::vector<InputFunctions> candidates = all_functions(signals, rows);
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
+        const std::vector<InputFunctions> candidates = all_functions(signals, rows, output);
         const Eigen::MatrixXd target = rows.analyse(rest.col(output), output);
-        auto [entry, gains] = inputs_of_rest(candidates, target, noise.col(output), output);
+        auto [entry, gains] =
+            inputs_of_rest(candidates, target, noise.col(output), block_edges(rows.filled(output)), output);
         if (entry.depends_on.empty()) {
             continue;
         }
@@ -223,6 +244,27 @@ std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const
         result.push_back(std::move(entry));
     }
     return result;
+}
+
+void set_unexplained(DiagnosisWork& work) {
+    std::vector<Unexplained>& unexplained = work.diagnosis.unexplained;
+    const std::vector<bool>& by_least_squares = work.diagnosis.by_least_squares;
+    unexplained = unnamed_dependences(*work.signals, work.measured, work.fitted_effects);
+    std::erase_if(unexplained, [&](const Unexplained& one) {
+        return by_least_squares[static_cast<std::size_t>(one.output)];
+    });
+    Eigen::MatrixXd rest = work.rest;
+    for (Eigen::Index output = 0; output < rest.cols(); ++output) {
+        if (by_least_squares[static_cast<std::size_t>(output)]) {
+            rest.col(output) = work.measured.col(output) - work.extended.col(output);
+        }
+    }
+    for (const StationaryContact& push : work.pushes) { // a named cause
+        if (by_least_squares[push.joint]) {
+            rest.col(static_cast<Eigen::Index>(push.joint)) -= push.share;
+        }
+    }
+    add_rest(unexplained, unexplained_rest(*work.signals, work.measured, rest, work.fitted_effects.noise));
 }
 
 } // namespace dfdyn::tools

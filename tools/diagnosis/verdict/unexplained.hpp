@@ -18,4 +18,8 @@ void add_rest(std::vector<Unexplained>& unexplained, const std::vector<Unexplain
 std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                                           const Eigen::MatrixXd& rest, const Eigen::MatrixXd& noise);
 
+/// Sets `unexplained` of the diagnosis: per output, the predictable residual that matches no cause of the
+/// catalogue. Where plain least squares is the extended model, it is the residual of plain least squares.
+void set_unexplained(DiagnosisWork& work);
+
 } // namespace dfdyn::tools

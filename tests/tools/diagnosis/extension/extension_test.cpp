@@ -6,11 +6,13 @@
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/base/numerics/to_vector.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/extension/corrected_robot.hpp"
 #include "tools/model/chain_model.hpp"
 #include "tools/robot/dynamics/arm_dynamics.hpp"
+#include "tools/robot/firmware_chain.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
 
 #include <cmath>
@@ -197,6 +199,47 @@ TEST_CASE("the extended model of a wrench adds what the columns of the diagnosis
         CHECK(carried.contains(effect));
     }
     CHECK_FALSE(carried.contains("ft_crosstalk"));
+}
+
+TEST_CASE("the bias of an F/T sensor is not multiplied by the gain of its axis") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = dfdyn::tests::icub_right_arm();
+    const auto signals = std::make_shared<const DiagnosisSignals>(
+        diagnosis_signals(robot, OutputKind::wrench, swinging(robot, engine)));
+    const std::vector<Candidate> candidates = all_candidates(*signals);
+    const Candidate& gain = dfdyn::tests::find(candidates, "ft_gain", "ft_sensor"); // of fx
+    const Candidate& bias = dfdyn::tests::find(candidates, "ft_bias", "ft_sensor");
+    const VectorXd share = VectorXd::Constant(1, 0.2);
+    const VectorXd force = VectorXd::Constant(1, 30); // N, on fx
+    DiagnosisWork work = work_with(signals, gain, 0, VectorXd{{share[0], force[0]}});
+    work.fitted_effects.candidates.push_back(bias);
+    work.fitted_effects.chosen.push_back({1, 0});
+    const MatrixXd expected = signals->nominal + added_by(*signals, gain, gain.shapes[0], share) +
+                              added_by(*signals, bias, bias.shapes[0], force);
+    const MatrixXd found = outputs_of(extension_of(work), signals->measured.motion);
+    CHECK((found - expected).norm() < 1e-6 * expected.norm());
+}
+
+TEST_CASE("the extended model with an error of all masses and a payload is the fitted one") {
+    DFDYN_SEEDED_ENGINE(engine);
+    DiagnosisWork work = work_of_swinging_ur5(engine);
+    const DiagnosisSignals& signals = *work.signals;
+    const VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
+    FittedEffects& fitted = work.fitted_effects;
+    fitted.uncertain_masses = 6;
+    for (Index body = 0; body < 6; ++body) {
+        fitted.nuisance.push_back(on_outputs(signals.of_body(body, nominal.segment<10>(10 * body))));
+    }
+    fitted.problem.nuisance.resize(6);
+    fitted.candidates = {dfdyn::tests::find(lasting_candidates(signals), "payload", "tool")};
+    fitted.chosen = {{0, 0}};
+    fitted.values.coefficients = VectorXd::Constant(7, 0.1);
+    fitted.values.coefficients[6] = 2; // kg
+    fitted.values.covariance = 1e-12 * MatrixXd::Identity(7, 7);
+    fitted.fit.coefficients = 0.5 * fitted.values.coefficients; // differs at outputs without an exact effect
+    const MatrixXd expected = signals.nominal + fitted.model(signals);
+    const MatrixXd found = outputs_of(extension_of(work), signals.measured.motion);
+    CHECK((found - expected).norm() < 1e-6 * expected.norm());
 }
 
 TEST_CASE("columns of the same effect at the same place are merged into one") {

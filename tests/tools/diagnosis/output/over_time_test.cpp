@@ -2,6 +2,8 @@
 #include "tools/diagnosis/output/over_time.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/output/plot_abscissa.hpp"
 
 #include <cmath>
 
@@ -36,6 +38,21 @@ TEST_CASE("a time axis counts times since 1970 from the first second of the reco
     CHECK(time_axis(measured).label == "time after 2023-11-14 22:13:20.00 UTC (s)");
     const XyLine line = line_over_time(measured, "error", Eigen::VectorXd::Zero(10), {0, 1});
     CHECK(line.x[0] == Approx(0.25));
+}
+
+TEST_CASE("a contact in a recording since 1970 is drawn with the time around it") {
+    DiagnosisSignals signals;
+    signals.measured = with_gap(1'700'000'000.25);
+    signals.nominal = Eigen::MatrixXd::Zero(10, 1);
+    Finding contact;
+    contact.effect = effects::external_contact().name;
+    contact.where = "joint1";
+    const double start_s = signals.measured.time_s[4];
+    contact.parameters = {{"start", "s", start_s, 0, 0}, {"end", "s", start_s + 0.2, 0, 0}};
+    const PlotAbscissa over = plot_abscissa(signals, contact, Eigen::VectorXd::Zero(10));
+    CHECK(over.first == 4); // the rows before the gap are 5 s earlier
+    CHECK(over.count == 6);
+    CHECK(over.value[4] == Approx(5.65));
 }
 
 } // namespace over_time_test

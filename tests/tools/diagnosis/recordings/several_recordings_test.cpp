@@ -85,6 +85,7 @@ TEST_CASE("a wrong link and a load in one of three recordings are distinguished,
         for (Index term = 1; term <= 3; ++term) {
             const Index at = links + terms_of_joint * joint + term;
             const double reach = 1.96 * std::hypot(std::sqrt(fit.covariance(at, at)), fit.spread[at]);
+            CHECK(reach < truth[term - 1]);
             held += std::abs(fit.value[at] - truth[term - 1]) < reach ? 1 : 0;
         }
     }
@@ -144,6 +145,25 @@ TEST_CASE("a single recording and wrenches have no common fit") {
     DiagnosisOptions wrench;
     wrench.outputs = OutputKind::wrench;
     CHECK_FALSE(fit_recordings(robot, {one, one}, wrench, false).answered());
+}
+
+TEST_CASE("a recording of two rows, or with rows 1 s apart, has no part in the common fit") {
+    const Robot robot = ur5();
+    const Recording one = simulated_recording(robot, scenario_of(robot, 0), "one.csv");
+    for (const int rows : {2, 20}) {
+        CAPTURE(rows);
+        Recording slow;
+        slow.source = "slow.csv";
+        slow.position.names = one.position.names;
+        slow.output.names = one.output.names;
+        for (int row = 0; row < rows; ++row) {
+            append_row(slow, row, Eigen::VectorXd::Constant(6, 0.01 * row), Eigen::VectorXd::Zero(6));
+        }
+        CHECK(answer_of(robot, {one, slow}, false).pooled == std::vector<std::size_t>{0});
+        if (rows < 4) {
+            CHECK_THROWS_AS(measured_motion(slow), InputError);
+        }
+    }
 }
 
 /// Adds dry friction to the recording: `part` of each joint's in the scenario.

@@ -10,13 +10,23 @@ using namespace dfdyn::tests;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+/// The weights depend on the robot's kinds of joints only.
+Robot with_joints(Index count, bool prismatic = false) {
+    Robot robot;
+    robot.joints.resize(static_cast<std::size_t>(count));
+    for (RobotJoint& joint : robot.joints) {
+        joint.prismatic = prismatic;
+    }
+    return robot;
+}
+
 /// Row weights for a joint whose torques equal its positions, plus a slow disturbance of amplitude
 /// `straying`.
-MatrixXd weight_of(MeasuredMotion measured, double straying) {
+MatrixXd weight_of(MeasuredMotion measured, double straying, bool prismatic = false) {
     const MatrixXd torques = measured.motion.position;
     const Eigen::ArrayXd slowly = (3 * measured.time_s.array()).sin();
     measured.outputs = 0.3 * (torques.colwise() + straying * slowly.matrix());
-    return joint_row_weight(measured, torques);
+    return joint_row_weight(with_joints(torques.cols(), prismatic), measured, torques);
 }
 
 /// The first of two joints rests from 5 s to 8 s, apart from a quantiser's 1.5 mrad. The second moves
@@ -51,7 +61,7 @@ TEST_CASE("a joint that sticks for a third of a second at a reversal is at rest"
     measured.motion.position.col(0).segment(first, count).setConstant(measured.motion.position(first, 0));
     measured.outputs = 0.3 * measured.motion.position;
     measured.outputs.col(0).segment(first, count) += 2 * Eigen::VectorXd::LinSpaced(count, -1, 1);
-    const MatrixXd weight = joint_row_weight(measured, measured.motion.position);
+    const MatrixXd weight = joint_row_weight(with_joints(1), measured, measured.motion.position);
     CHECK(weight.middleRows(first, count).maxCoeff() == 0);
     CHECK(weight.middleRows(200, first - 200 - 40).minCoeff() == 1);
     CHECK(weight.middleRows(first + count + 40, 1000).minCoeff() == 1);
@@ -70,6 +80,28 @@ TEST_CASE("the rows of a joint that never moves keep their weight") {
     MeasuredMotion measured = swing(1);
     measured.motion.position.setConstant(0.3);
     CHECK(weight_of(measured, 0.2).middleRows(200, 1600).minCoeff() == 1);
+}
+
+TEST_CASE("a slide at 8 mm/s is not at rest, and one at 0.8 mm/s is") {
+    for (const double speed : {8e-3, 8e-4}) {
+        CAPTURE(speed);
+        MeasuredMotion measured = swing(1);
+        const double start = measured.motion.position(800, 0);
+        for (Index row = 800; row < 1100; ++row) {
+            measured.motion.position(row, 0) = start + speed * (measured.time_s[row] - 8);
+        }
+        const MatrixXd weight = weight_of(measured, 0.2, true).middleRows(800, 300);
+        CHECK(weight.minCoeff() == (speed > 1e-3 ? 1 : 0));
+        CHECK(weight.maxCoeff() == weight.minCoeff());
+    }
+}
+
+TEST_CASE("an output that is constant at rest keeps its weight at a joint that moves no mass") {
+    MeasuredMotion measured = stopping();
+    measured.outputs = 0.3 * measured.motion.position;
+    measured.outputs.col(0).segment(500, 300).setConstant(measured.outputs(500, 0));
+    const MatrixXd weight = joint_row_weight(with_joints(2), measured, MatrixXd::Zero(2000, 2));
+    CHECK(weight.middleRows(200, 1600).minCoeff() == 1);
 }
 
 TEST_CASE("the weight tapers at the ends of each segment and is one in between") {

@@ -7,6 +7,7 @@
 #include "tests/tools/robot/arms.hpp"
 #include "tools/base/numerics/root_mean_square.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/verdict/finding_gain.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
 
 #include <algorithm>
@@ -37,6 +38,27 @@ FittedEffects of_two_shapes(const VectorXd& first, const VectorXd& second, const
     cause.columns.push_back(on_output(0, second));
     cause.shapes = {{{0}, is_anything, 1}, {{1}, is_anything, 2}};
     return fitted_effects_of({cause}, 1, unexplained);
+}
+
+TEST_CASE("the evidence of a cause has the output's unit and states whether the error falls or rises") {
+    Robot robot = ur5();
+    robot.joints[1].prismatic = true;
+    const DiagnosisSignals signals = signals_of(robot, OutputKind::joint_torque);
+    const MatrixXd rest = MatrixXd::Ones(signals.rows(), 6);
+    const std::vector<std::string> names = output_names(OutputKind::joint_torque, 6);
+    const Gains gains(signals, rest, names);
+    const auto evidence = [&](Index output, double contribution) {
+        MatrixXd share = MatrixXd::Zero(signals.rows(), 6);
+        share.col(output).setConstant(contribution);
+        Finding finding;
+        finding.effect = "torque_offset";
+        const bool falls = gains.tell(finding, share);
+        CHECK(falls == (contribution > 0));
+        return finding.evidence;
+    };
+    CHECK_THAT(evidence(0, 1), Catch::Matchers::EndsWith("falls from 2 to 1 N·m"));
+    CHECK_THAT(evidence(0, -0.5), Catch::Matchers::EndsWith("rises from 0.5 to 1 N·m"));
+    CHECK_THAT(evidence(1, 1), Catch::Matchers::EndsWith("falls from 2 to 1 N"));
 }
 
 TEST_CASE("the interval of a parameter contains the uncertainty of its shape") {

@@ -5,6 +5,7 @@
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
+#include "tools/robot/joint_unit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +62,17 @@ TEST_CASE("parameters and errors of a prismatic joint are in newtons and metres"
     print_diagnosis(text, diagnosis, {});
     CHECK_THAT(text.str(), Catch::Matchers::ContainsSubstring("N·s/m"));
     CHECK_THAT(text.str(), Catch::Matchers::ContainsSubstring(" N; plain least squares"));
+}
+
+TEST_CASE("a prismatic joint has no eccentric encoder") {
+    const DiagnosisSignals signals = dfdyn::tests::signals_of(arm_with_slide(), OutputKind::joint_torque);
+    const auto eccentric_at = [&](const char* where) {
+        return std::ranges::any_of(lasting_candidates(signals), [where](const Candidate& one) {
+            return one.effect == "encoder_eccentricity" && one.where == where;
+        });
+    };
+    CHECK_FALSE(eccentric_at("encoder3"));
+    CHECK(eccentric_at("encoder2"));
 }
 
 TEST_CASE("units at revolute joints remain") {

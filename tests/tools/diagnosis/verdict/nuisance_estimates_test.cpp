@@ -20,8 +20,8 @@ using Eigen::VectorXd;
 /// 0.02.
 FittedEffects of_nuisance(const VectorXd& coefficients, Index masses) {
     FittedEffects fitted_effects;
-    fitted_effects.fit.coefficients = coefficients;
-    fitted_effects.fit.covariance = 4e-4 * MatrixXd::Identity(coefficients.size(), coefficients.size());
+    fitted_effects.values.coefficients = coefficients;
+    fitted_effects.values.covariance = 4e-4 * MatrixXd::Identity(coefficients.size(), coefficients.size());
     fitted_effects.nuisance.resize(static_cast<std::size_t>(coefficients.size()));
     fitted_effects.uncertain_masses = masses;
     return fitted_effects;
@@ -61,7 +61,7 @@ TEST_CASE("unknown torque constants are estimated and have no upper bound where 
     const VectorXd gains = VectorXd::LinSpaced(6, 0.1, 0.2); // A/(N·m)
     VectorXd errors{{0.25, 0, 0, -0.5, 0.1, -1.2}};
     FittedEffects fitted_effects = of_nuisance(errors, 0);
-    fitted_effects.fit.covariance(3, 3) = 1;
+    fitted_effects.values.covariance(3, 3) = 1;
     const std::vector<NuisanceEstimate> nuisance_estimates =
         estimate_nuisances(signals, fitted_effects, gains);
     REQUIRE(nuisance_estimates.size() == 6);

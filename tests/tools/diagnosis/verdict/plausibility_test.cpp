@@ -143,3 +143,25 @@ TEST_CASE("a recording with more noise than the motion changes its outputs is no
     INFO((diagnosis.suspicions.empty() ? "" : diagnosis.suspicions.front().text));
     CHECK_FALSE(refused(diagnosis));
 }
+
+TEST_CASE("a single joint that moves slowly under noise is not refused as another robot") {
+    CleanRecording one;
+    const Index rows = one.position.rows();
+    RobotMotion motion{MatrixXd::Constant(rows, 6, -0.4), MatrixXd::Zero(rows, 6), MatrixXd::Zero(rows, 6)};
+    const Eigen::ArrayXd phase = 0.2 * VectorXd::LinSpaced(rows, 0, one.duration_s).array();
+    motion.position.col(0) = 0.5 * phase.sin();
+    motion.velocity.col(0) = 0.1 * phase.cos();
+    motion.acceleration.col(0) = -0.02 * phase.sin();
+    one.position = motion.position;
+    one.torque = rigid_outputs(dfdyn::tests::ur5(), OutputKind::joint_torque, motion);
+    std::mt19937_64 engine(1);
+    std::normal_distribution<double> noise(0, 0.3); // N·m
+    for (Index joint = 0; joint < 6; ++joint) {
+        for (double& value : one.torque.col(joint)) {
+            value += noise(engine);
+        }
+    }
+    const Diagnosis diagnosis = diagnosis_of(one.recording());
+    INFO((diagnosis.suspicions.empty() ? "" : diagnosis.suspicions.front().text));
+    CHECK_FALSE(refused(diagnosis));
+}

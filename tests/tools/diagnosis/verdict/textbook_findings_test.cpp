@@ -184,8 +184,12 @@ TEST_CASE("the intervals of plain least squares contain the true values under sl
         name_by_least_squares(work);
         const auto holds = [&](const char* effect, double truth) {
             const Finding* const one = found(work, effect, "joint1");
-            return one != nullptr && one->parameters.front().low < truth &&
-                   truth < one->parameters.front().high;
+            if (one == nullptr) {
+                return false;
+            }
+            const FoundParameter& value = one->parameters.front();
+            CHECK((value.high - value.low) / 2 < truth);
+            return value.low < truth && truth < value.high;
         };
         dry_held += holds("coulomb_friction", dry) ? 1 : 0;
         viscous_held += holds("viscous_friction", viscous) ? 1 : 0;
