@@ -45,7 +45,7 @@ icub=(icub_right_arm/icub_right_arm.urdf r_hand icub_loop.json)
 
 # in_memory FOLDER ARM_OPTION...
 in_memory() {
-    local loop=("$dfdyn" loop --simulate "${@:2}" --from-prior --duration 95.001)
+    local loop=("$dfdyn" loop --simulate "${@:2}" --from-prior --duration 95)
     basename "$1"
     "${loop[@]}" --model "$1/SPK.json" -o "$1"
     hyperparameters P "$1" "$3" "$tip"

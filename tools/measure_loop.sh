@@ -60,6 +60,8 @@ cells() {
         function cell(value) { return value == "" ? "stopped" : sprintf("%.2f", value) }
         BEGIN { split(limits, limit, " ") }
         FNR == 1 { file++ }
+        /^ +window \(s\)/ { split("", column); for (i = 3; i <= NF; i++) column[$i] = i - 1 } # of the runs that did not stop
+        function of(run) { return run in column ? $column[run] : "" }
         file == 1 && $2 == "loop:" {
             run = $1
             match($0, /\([a-z_]+/)
@@ -75,18 +77,19 @@ cells() {
         }
         /^ +[0-9]+\.[0-9]+ / && $1 >= 10 {
             if (file == 1) {
-                for (k = 2; k <= 5; k++) { if ($k > worst[k]) worst[k] = $k }
-                if ($5 / $2 > ratio) ratio = $5 / $2
-                if ($1 >= begin - 10 && $1 < begin && $5 > usual) usual = $5
-                if ($1 >= begin && $1 < 65 && $5 > 1.5 * usual) recovered = $1 + 1 - begin
+                for (name in column) { if (of(name) > worst[name]) worst[name] = of(name) }
+                if (of("learned") == "") next
+                if (of("nominal") != "" && of("learned") / of("nominal") > ratio) ratio = of("learned") / of("nominal")
+                if ($1 >= begin - 10 && $1 < begin && of("learned") > usual) usual = of("learned")
+                if ($1 >= begin && $1 < 65 && of("learned") > 1.5 * usual) recovered = $1 + 1 - begin
             } else {
-                if ($4 > least_squares) least_squares = $4
-                if ($5 > observed) observed = $5
+                if (of("learned_alone") > least_squares) least_squares = of("learned_alone")
+                if (of("learned") > observed) observed = of("learned")
             }
         }
         END {
-            printf "| %s | %s | %s | %s | %s | %s | %s | %s | %.1f | %s | %s | %s |\n", fault, cell(worst[2]), cell(worst[3]), cell(least_squares),
-                cell(observed), cell(worst[4]), cell(worst[5]), ratio == "" ? "-" : sprintf("%.2f", ratio), step,
+            printf "| %s | %s | %s | %s | %s | %s | %s | %s | %.1f | %s | %s | %s |\n", fault, cell(worst["nominal"]), cell(worst["observer"]), cell(least_squares),
+                cell(observed), cell(worst["learned_alone"]), cell(worst["learned"]), ratio == "" ? "-" : sprintf("%.2f", ratio), step,
                 (ended["learned"] == "none" && begin >= 20 ? (begin + recovered > 60 ? "≥ " : "") sprintf("%d", recovered) : "-"), named,
                 ended["learned"] == "none" ? "" : ended["learned"]
         }' "$3" "$4"
@@ -95,7 +98,7 @@ cells() {
 # run ARM URDF FAULT MODEL [OPTION...]: ends with a status where the loop stops by itself, as some shall.
 run() {
     "$dfdyn" loop --simulate --robot "$2" --scenario "$out/$1.$3.json" --bus "$data/can/$1_loop.json" \
-        --model "$out/$1.$4.json" --from-prior --duration 80.001 --window 1 "${@:5}" >"$out/$1.$3.$4.run" 2>"$out/$1.$3.$4.error" || [[ $? -eq 1 ]]
+        --model "$out/$1.$4.json" --from-prior --duration 80 --window 1 "${@:5}" >"$out/$1.$3.$4.run" 2>"$out/$1.$3.$4.error" || [[ $? -eq 1 ]]
 }
 
 # table ARM URDF LIMIT...: all faults of an arm.

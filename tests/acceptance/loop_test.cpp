@@ -46,9 +46,9 @@ LoopModel trained(const Setting& setting, const Structure& structure = structure
 }
 
 TrackingRun tracked(const Setting& setting, const std::string& name, const LoopModel* model,
-                    const LoopLimits& limits, double duration_s = 95.001, double window_s = 5) {
+                    const LoopLimits& limits, double duration_s = 95, double window_s = 5) {
     ClosedLoop loop(setting.robot, setting.scenario, "scenario", model, &setting.bus, limits);
-    Tracking tracking(window_s);
+    Tracking tracking(window_s, 1 / setting.scenario.controller.rate_hz);
     loop.run_to(duration_s, [&](const ClosedLoopInstant& instant) {
         tracking.add(instant.time_s, instant.error, loop.loop().feed_forward().learned_share());
     });
@@ -95,8 +95,8 @@ void check_tracking(const Setting& arm) {
 void check_short_tracking(const Setting& arm) {
     const LoopModel model = trained(arm);
     const std::vector<TrackingWindow> nominal =
-        tracked(arm, "nominal", nullptr, without_observer(), 10.001).windows;
-    const std::vector<TrackingWindow> learned = tracked(arm, "learned", &model, {}, 10.001).windows;
+        tracked(arm, "nominal", nullptr, without_observer(), 10).windows;
+    const std::vector<TrackingWindow> learned = tracked(arm, "learned", &model, {}, 10).windows;
     REQUIRE(nominal.size() == 2);
     for (std::size_t window = 0; window < nominal.size(); ++window) {
         CAPTURE(nominal[window].start_s, nominal[window].all, learned.at(window).all);
@@ -127,8 +127,8 @@ Scenario with_fault(const Setting& ur5, const std::string& fault) {
 /// Checks every second of a run with a fault at 40 s. `model` was not trained on the scenario.
 void check_fault(const Setting& arm, const LoopModel& model, double largest_rad_a_second_later) {
     const std::vector<TrackingWindow> nominal =
-        tracked(arm, "nominal", nullptr, without_observer(), 60.001, 1).windows;
-    const std::vector<TrackingWindow> learned = tracked(arm, "learned", &model, {}, 60.001, 1).windows;
+        tracked(arm, "nominal", nullptr, without_observer(), 60, 1).windows;
+    const std::vector<TrackingWindow> learned = tracked(arm, "learned", &model, {}, 60, 1).windows;
     REQUIRE(nominal.size() == 60);
     for (std::size_t second = 0; second < nominal.size(); ++second) {
         CAPTURE(second, nominal[second].all, learned.at(second).all);
@@ -142,7 +142,7 @@ void check_later_seconds(Setting arm, const LoopModel& model, const std::vector<
                          double largest_rad) {
     for (const std::uint64_t seed : seeds) {
         arm.scenario.seed = seed;
-        const std::vector<TrackingWindow> learned = tracked(arm, "learned", &model, {}, 48.001, 1).windows;
+        const std::vector<TrackingWindow> learned = tracked(arm, "learned", &model, {}, 48, 1).windows;
         REQUIRE(learned.size() == 48);
         for (std::size_t second = 41; second < learned.size(); ++second) {
             CAPTURE(seed, second, learned[second].all);

@@ -23,7 +23,7 @@ LoopTrial run_loop(const StrangersLoop& stranger, bool observer, const LoopModel
     }
     ClosedLoop loop(stranger.robot, stranger.scenario, "scenario", model,
                     stranger.bus ? &*stranger.bus : nullptr, limits);
-    Tracking tracking(1);
+    Tracking tracking(1, 1 / stranger.scenario.controller.rate_hz);
     LoopPeaks peaks, late_peaks;
     loop.run_to(duration_s, [&](const ClosedLoopInstant& instant) {
         tracking.add(instant.time_s, instant.error, loop.loop().feed_forward().learned_share());

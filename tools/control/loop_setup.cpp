@@ -7,6 +7,7 @@
 #include "tools/can/arm/device_frames.hpp"
 #include "tools/can/arm/torque_frames.hpp"
 #include "tools/control/observer_bandwidth.hpp"
+#include "tools/simulation/arm/joint_limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -182,12 +183,23 @@ LearnedFeedForward learned_part(const Robot& robot, const LoopModel& learned, in
     return model;
 }
 
+/// Throws InputError if the motion exceeds the joints' position limits within its first 20 s.
+void check_motion(const Robot& robot, const Scenario& scenario, const std::string& source) {
+    constexpr double checked_s = 20;
+    const double rate_hz = scenario.controller.rate_hz;
+    const std::unique_ptr<Task> task = make_task(scenario.task, robot, 1 / rate_hz, scenario.seed);
+    for (int tick = 0; tick <= checked_s * rate_hz; ++tick) {
+        check_limits(robot, task->next().position, source + ": task: reference of ");
+    }
+}
+
 } // namespace
 
 std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenario& scenario,
                                                const std::string& source, const LoopModel* learned,
                                                int delay_ticks, const LoopLimits& limits) {
     require_feed_forward(scenario.controller.kind, source);
+    check_motion(robot, scenario, source);
     const auto make = [&] {
         return make_task(scenario.task, robot, 1 / scenario.controller.rate_hz, scenario.seed);
     };

@@ -16,8 +16,9 @@ DerivativeModel loop_filter(const Scenario& scenario);
 ///   motion. If two joints have nearly parallel axes, their feedbacks turn them against each other, against
 ///   a fraction of their own inertias.
 ///
-/// The delay is the bus' (`delay_ticks`), plus half a tick for holding the command, plus half the largest
-/// window of the velocity filter. Slower motion has longer windows and a smaller margin.
+/// The delay is the bus' (`delay_ticks`), plus half a tick for holding the command, plus that of a
+/// velocity from half the largest window, a quarter of its duration. Slower motion has longer windows and a
+/// smaller margin.
 JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, int delay_ticks);
 
 } // namespace dfdyn::tools

@@ -62,10 +62,10 @@ PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, 
         }
         if (loop.brake_requested() && !brakes) {
             brakes = true;
-            if (loop.cause() != StopCause::requested && !loop.done()) {
-                std::cerr << "loop: stopped (" << name(loop.cause())
-                          << "): holds the arm, requests its brakes; ends at Ctrl-C\n";
-            }
+            std::cerr << "loop: stopped (" << name(loop.cause())
+                      << "): holds the arm, requests its brakes; ends "
+                      << (loop.ends_itself() ? "when they have had time to close\n"
+                                             : "at Ctrl-C, or after a second without positions\n");
         }
         return !loop.done();
     });

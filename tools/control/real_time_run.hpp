@@ -37,7 +37,7 @@ struct LoopLog {
 
 /// Runs `loop` on a CAN interface until it is finished, with one tick per period at absolute times. Requests
 /// a stop at the end of the duration or when `stop` becomes true. A loop that has stopped by itself holds the
-/// arm until then, and reports it on standard error when it requests the brakes. A late tick runs
+/// arm until then. Any stop is reported on standard error when the loop requests the brakes. A late tick runs
 /// immediately. `log` receives every tick of the motion. Throws InputError if the interface cannot be opened.
 PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, LoopLog& log);
 

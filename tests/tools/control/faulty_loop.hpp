@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -140,7 +141,8 @@ class FaultyLoop {
             braked_tick_ = moving_tick_ + static_cast<int>(std::lround(0.2 / period_s_));
         }
         const auto step = (torque - command_).cwiseQuotient(limit_).cwiseAbs();
-        peak_step_ = std::max(peak_step_, step.maxCoeff());
+        peak_step_ = torque.allFinite() ? std::max(peak_step_, step.maxCoeff())
+                                        : std::numeric_limits<double>::infinity();
         command_ = torque;
         if (loop_->state() != tools::LoopState::waiting) {
             port_.send(loop_end_, torque);

@@ -62,8 +62,10 @@ LoopPort::LoopPort(const BusDescription& description, double loop_period_s)
     : trigger_(description.trigger), measures_torque_(description.outputs == OutputKind::joint_torque),
       delay_ticks_(delay_of(description, loop_period_s)), period_ns_(std::llround(loop_period_s * 1e9)),
       latency_ns_(description.joints.latency_ns), clock_(period_ns_),
-      arm_(for_loop(description, loop_period_s)), commands_(description), position_(description.joint_count),
-      torque_(description.joint_count), missing_(static_cast<std::size_t>(description.joint_count)),
+      arm_(for_loop(description, loop_period_s)), commands_(description),
+      position_(JointVector::Zero(description.joint_count)), torque_(position_),
+      sent_(static_cast<std::size_t>(delay_ticks_) + 1),
+      missing_(static_cast<std::size_t>(description.joint_count)),
       newest_ns_(missing_.size(), std::numeric_limits<std::int64_t>::min()),
       next_request_ns_(std::numeric_limits<std::int64_t>::min()) {}
 
@@ -173,10 +175,13 @@ LoopInput LoopPort::sense(std::int64_t now_ns) {
     }
     take(sample, now_ns, input);
     input.time_ns = *instant + clock_.correction_ns();
+    // within a tick, devices with a clock of their own measure at any time
+    const std::int64_t age_ns = due_ns - input.time_ns;
+    take_torque(sample, 2 * age_ns > -period_ns_ && age_ns < period_ns_ + latency_ns_, input);
     return input;
 }
 
-/// Passes the valid positions and the torques to the loop.
+/// Passes the valid positions to the loop.
 void LoopPort::take(const BusSample& sample, std::int64_t now_ns, LoopInput& input) {
     for (Eigen::Index joint = 0; joint < position_.size(); ++joint) {
         const auto index = static_cast<std::size_t>(joint);
@@ -186,11 +191,15 @@ void LoopPort::take(const BusSample& sample, std::int64_t now_ns, LoopInput& inp
     input.position = &position_;
     input.missing = find_missing(sample, now_ns) ? &missing_ : nullptr;
     sampled_ = true;
+}
+
+/// Passes the torque at the sample's time to the loop: measured, or the command that was in effect then.
+void LoopPort::take_torque(const BusSample& sample, bool on_time, LoopInput& input) {
     if (measures_torque_ && sample.sample.output_valid) {
         torque_ = Eigen::Map<const Eigen::VectorXd>(sample.sample.output.data(), torque_.size());
         input.torque = &torque_;
-    } else if (!measures_torque_ && command_.size() > 0) {
-        input.torque = &command_;
+    } else if (!measures_torque_ && on_time && sends_ >= sent_.size()) {
+        input.torque = &sent_[sends_ % sent_.size()];
     }
 }
 

@@ -96,10 +96,11 @@ class LoopPort {
     /// with the next frame. The tick waits for frames that have arrived and were not read yet.
     LoopInput sense(std::int64_t now_ns);
 
-    /// Sends a command. It also serves as the torque of the next tick if the bus does not measure torques.
+    /// Sends a command. Without measured torques it is also the torque of the next tick's measurement, which
+    /// arrives `delay_ticks` after that tick.
     template <hal::Bus B>
     void send(B& bus, const JointVector& torque) {
-        command_ = torque;
+        sent_[sends_++ % sent_.size()] = torque;
         offer(bus, commands_.encode({torque.data(), static_cast<std::size_t>(torque.size())}));
     }
 
@@ -117,6 +118,7 @@ class LoopPort {
     std::optional<std::int64_t> sample_time(std::int64_t due_ns, std::int64_t now_ns) noexcept;
     bool find_missing(const BusSample& sample, std::int64_t now_ns);
     void take(const BusSample& sample, std::int64_t now_ns, LoopInput& input);
+    void take_torque(const BusSample& sample, bool on_time, LoopInput& input);
 
     template <hal::Bus B>
     void offer(B& bus, std::span<const hal::Frame> frames) {
@@ -141,7 +143,9 @@ class LoopPort {
     bool drained_ = false; ///< whether it received all that had arrived
     bool sampled_ = false; ///< whether there has been a sample with positions
     bool bus_lost_ = false;
-    JointVector position_, torque_, command_;
+    JointVector position_, torque_;
+    std::vector<JointVector> sent_; ///< ring: commands of the last `delay_ticks_` + 1 ticks
+    std::size_t sends_ = 0;
     std::vector<bool> missing_;
     std::vector<std::int64_t> newest_ns_; ///< reading of each joint at the previous sample
     std::int64_t next_request_ns_;

@@ -12,13 +12,12 @@ namespace {
 /// A position with a value that is not finite counts as missing.
 bool has_position(const LoopInput& input) { return input.position != nullptr && input.position->allFinite(); }
 
-/// Returns whether the last output of feedback and observer is unreliable because something blocked the arm
-/// or a reading was wrong.
-bool opposed(StopCause cause, const std::optional<TakenAction>& stop) {
-    const bool pushed = cause == StopCause::finding && stop &&
-                        (stop->cause == Cause::contact || stop->cause == Cause::frozen);
-    return pushed || cause == StopCause::following_error || cause == StopCause::torque_limit ||
-           cause == StopCause::frozen_encoder;
+void set_missing(const std::vector<bool>* from, std::vector<bool>& missing) {
+    if (from != nullptr) {
+        missing = *from;
+    } else {
+        missing.assign(missing.size(), false);
+    }
 }
 
 DisturbanceObserver<double, dynamic> make_observer(const LoopConfig& config) {
@@ -39,11 +38,13 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
       clock_(std::llround(config_.period_s * 1e9)), watch_(config_.safe_stop, config_.period_s),
       safe_stop_(config_.safe_stop), task_(std::move(task), config_.period_s),
       observer_(make_observer(config_)), zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_),
-      command_(zero_), excess_(zero_), feedback_torque_(zero_),
-      missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()) {
+      command_(zero_), excess_(zero_),
+      feedback_torque_(zero_), early_{0, zero_, std::vector<bool>(static_cast<std::size_t>(zero_.size())),
+                                      false},
+      missing_(early_.missing.size()), blind_(missing_.size()) {
     references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
     references_.front() = task_.next();
-    commands_.resize(static_cast<std::size_t>(config_.delay_ticks) + 1);
+    commands_.resize(references_.size());
 }
 
 const Reference& ControlLoop::measured_reference(int ago) const noexcept {
@@ -82,35 +83,35 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
 void ControlLoop::sense(const LoopInput& input) {
     clock_.advance();
     feedback_.advance();
-    exact_ = false;
+    learnable_ago_.reset();
+    std::optional<int> place;
     if (has_position(input)) {
-        const std::optional<int> place = clock_.place(input.time_ns);
-        if (place && *place > 0) {
-            early_ = {counters_.ticks + static_cast<std::uint64_t>(*place), *input.position};
-        } else if (place) {
-            take(-*place, *input.position, input.missing);
-        }
-    } else if (early_ && early_->tick == counters_.ticks) {
-        take(0, early_->position, nullptr);
+        place = clock_.place(input.time_ns, input.deadline_missed);
     }
-    if (state() == LoopState::running && !feedback_.complete()) {
-        ++counters_.coasted;
+    if (place && *place <= 0) {
+        take(-*place, *input.position, input.missing);
+    } else if (early_.tick == counters_.ticks && (early_.found_late || !has_position(input))) {
+        take(0, early_.position, &early_.missing);
+    }
+    if (place && *place > 0) {
+        early_.tick = counters_.ticks + static_cast<std::uint64_t>(*place);
+        early_.position = *input.position;
+        early_.found_late = input.deadline_missed;
+        set_missing(input.missing, early_.missing);
     }
 }
 
 void ControlLoop::take(int ticks_ago, const JointVector& position, const std::vector<bool>* missing) {
-    if (missing != nullptr) {
-        missing_ = *missing;
-    } else {
-        missing_.assign(missing_.size(), false);
-    }
+    set_missing(missing, missing_);
     const Reference& reference = measured_reference(ticks_ago);
     watch_.read(position, reference.position, feedback_, missing_);
     for (std::size_t joint = 0; joint < missing_.size(); ++joint) {
         missing_[joint] = missing_[joint] || watch_.repeated()[joint];
     }
     feedback_.observe(ticks_ago, position, reference, &missing_);
-    exact_ = ticks_ago == 0 && feedback_.regular();
+    if (feedback_.regular()) {
+        learnable_ago_ = ticks_ago;
+    }
 }
 
 void ControlLoop::follow() {
@@ -120,6 +121,7 @@ void ControlLoop::follow() {
         observer_.restart();
     }
     ++counters_.running;
+    counters_.coasted += feedback_.complete() ? 0 : 1;
     const JointVector forward = feed_forward_.update(reference());
     JointVector unlimited;
     if (touched_) {
@@ -129,7 +131,7 @@ void ControlLoop::follow() {
         command_ = forward + gradually(wanted);
         unlimited = forward + wanted;
     }
-    limit();
+    counters_.limited += limit() ? 1 : 0;
     excess_ = unlimited - command_;
     feedback_torque_ = command_ - forward;
     // the command equals the torque of the motion
@@ -137,12 +139,18 @@ void ControlLoop::follow() {
     if (full && !touched_) {
         feed_forward_.commanded(command_);
     }
-    const auto period_ns = static_cast<double>(config_.period_s * 1e9);
-    feed_forward_.measured(start_ns_ + std::llround(static_cast<double>(tick_) * period_ns),
-                           exact_ ? &feedback_.position() : nullptr, command_then());
+    learn();
     commands_[tick_ % commands_.size()] = full ? command_ : JointVector();
     act();
     meet_contact();
+}
+
+/// Passes the newest sample to the learner, at its own time.
+void ControlLoop::learn() {
+    const int ago = learnable_ago_.value_or(0);
+    const double ticks = static_cast<double>(tick_) - ago;
+    feed_forward_.measured(start_ns_ + std::llround(ticks * config_.period_s * 1e9),
+                           learnable_ago_ ? &feedback_.position() : nullptr, command_then(ago));
 }
 
 void ControlLoop::meet_contact() {
@@ -217,10 +225,11 @@ void ControlLoop::act() {
     }
 }
 
-const JointVector* ControlLoop::command_then() const noexcept {
+const JointVector* ControlLoop::command_then(int ago) const noexcept {
     // the command was held until the reading
-    const std::size_t ago = static_cast<std::size_t>(config_.delay_ticks) + 1;
-    const JointVector* const then = tick_ >= ago ? &commands_[(tick_ - ago) % commands_.size()] : nullptr;
+    const auto before = static_cast<std::size_t>(config_.delay_ticks + ago) + 1;
+    const JointVector* const then =
+        tick_ >= before ? &commands_[(tick_ - before) % commands_.size()] : nullptr;
     return then != nullptr && then->size() > 0 ? then : nullptr;
 }
 
@@ -234,11 +243,8 @@ JointVector ControlLoop::disturbance() {
 }
 
 JointVector ControlLoop::gradually(const JointVector& wanted) {
-    if (moved() && !feedback_.regular()) {
+    if (!feedback_.regular()) {
         recovery_ = recovery_ticks;
-    }
-    if (counters_.running == 1) {
-        return wanted;
     }
     const JointVector step = (recovery_ > 0 ? recovery_step : feedback_step) * config_.torque_limit;
     JointVector limited = wanted.cwiseMin(feedback_torque_ + step).cwiseMax(feedback_torque_ - step);
@@ -246,102 +252,14 @@ JointVector ControlLoop::gradually(const JointVector& wanted) {
     return limited;
 }
 
-void ControlLoop::hold() {
-    request_brakes();
-    command_ = slowly(limp() ? zero_ : holding_torque());
-}
-
-void ControlLoop::begin_braking(Eigen::Index joint) {
-    const double age_s = config_.period_s * static_cast<double>(feedback_.age(joint));
-    braking_.velocity[joint] = feedback_.velocity()[joint];
-    braking_.acceleration[joint] = -braking_.velocity[joint] / stop_time_s;
-    braking_.position[joint] = feedback_.position()[joint] + age_s * braking_.velocity[joint];
-}
-
-void ControlLoop::brake() {
-    if (braking_.position.size() == 0) {
-        braking_ = {zero_, zero_, zero_};
-        for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
-            begin_braking(joint);
-        }
-    }
-    for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
-        const auto j = static_cast<std::size_t>(joint);
-        if (blind_[j] && damped(joint)) { // brakes from the present position because readings have returned
-            begin_braking(joint);
-        }
-        blind_[j] = !damped(joint);
-        const double before = braking_.velocity[joint];
-        const double after = before + config_.period_s * braking_.acceleration[joint];
-        if (after * before <= 0) {
-            braking_.velocity[joint] = braking_.acceleration[joint] = 0;
-        } else {
-            braking_.position[joint] += config_.period_s * (before + after) / 2;
-            braking_.velocity[joint] = after;
-        }
-    }
-}
-
-JointVector ControlLoop::holding_torque() {
-    brake();
-    Reference where = braking_; // reference at the measured position
-    for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
-        where.position[joint] = damped(joint) ? feedback_.position()[joint] : where.position[joint];
-    }
-    JointVector torque = feed_forward_.holding(where);
-    if (!opposed(safe_stop_.cause(), actions_.stop())) {
-        torque += joint_vector(observer_.lasting());
-    }
-    for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
-        if (damped(joint)) {
-            const double most = spring_share * config_.torque_limit[joint];
-            const double spring = std::max(0.0, config_.gains.position[joint]) *
-                                  (braking_.position[joint] - feedback_.position()[joint]);
-            torque[joint] += std::clamp(spring, -most, most);
-            torque[joint] += std::max(0.0, config_.gains.velocity[joint]) *
-                             (braking_.velocity[joint] - feedback_.velocity()[joint]);
-        }
-    }
-    return torque;
-}
-
-void ControlLoop::request_brakes() {
-    constexpr double rest_speed = 0.05; // rad/s, m/s
-    if (brake_tick_) {
-        return;
-    }
-    bool blind = false, rests = true;
-    for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
-        blind = blind || !damped(joint);
-        rests = rests && damped(joint) && std::abs(feedback_.velocity()[joint]) <= rest_speed;
-    }
-    const bool stopped = state() == LoopState::stopped;
-    stopped_tick_ = stopped && !stopped_tick_ ? counters_.ticks : stopped_tick_;
-    const double waited_s =
-        stopped ? config_.period_s * static_cast<double>(counters_.ticks - *stopped_tick_) : 0;
-    if (blind || (stopped && (rests || waited_s >= brake_timeout_s))) {
-        brake_tick_ = counters_.ticks;
-    }
-}
-
-bool ControlLoop::limp() const noexcept {
-    return config_.safe_stop.mode == StopMode::limp && state() == LoopState::stopped && brake_tick_ &&
-           counters_.ticks - *brake_tick_ >= static_cast<std::uint64_t>(config_.safe_stop.brake_ticks);
-}
-
-bool ControlLoop::done() const noexcept {
-    const double silent_s = config_.period_s * static_cast<double>(counters_.ticks - position_tick_);
-    const bool over = told_ || limp() || silent_s >= give_up_s;
-    return state() == LoopState::stopped && (!moved() || (brake_requested() && over));
-}
-
-void ControlLoop::limit() {
+bool ControlLoop::limit() {
     const JointVector& most = config_.torque_limit;
-    counters_.limited += (command_.array().abs() > most.array()).any() ? 1 : 0;
+    const bool limited = (command_.array().abs() > most.array()).any();
     for (Eigen::Index joint = 0; joint < command_.size(); ++joint) { // a command that is not finite becomes 0
         command_[joint] =
             std::isfinite(command_[joint]) ? std::clamp(command_[joint], -most[joint], most[joint]) : 0;
     }
+    return limited;
 }
 
 } // namespace dfdyn::tools

@@ -47,7 +47,7 @@ struct LoopInput {
 struct LoopCounters {
     std::uint64_t ticks = 0;
     std::uint64_t running = 0; ///< ticks of these that followed the reference
-    std::uint64_t coasted = 0; ///< running ticks without a measured position
+    std::uint64_t coasted = 0; ///< running ticks without a reading of every joint
     std::uint64_t limited = 0; ///< running ticks with the torque of any joint at its limit
 };
 
@@ -124,10 +124,12 @@ class ControlLoop {
     bool brake_requested() const noexcept { return brake_tick_.has_value(); }
     /// Returns whether the torque has ended: in StopMode::limp, after the brakes had time to close.
     bool limp() const noexcept;
-    /// Returns whether the loop is finished: it has stopped, the brakes are requested, and one of these
-    /// holds: a stop was requested (also after the loop stopped by itself), it is limp, or no positions have
-    /// arrived for `give_up_s`.
+    /// Returns whether the loop is finished: it has stopped, the requested brakes had `brake_ticks` to close,
+    /// and one of these holds: a stop was requested (also after the loop stopped by itself), it is limp, or
+    /// no positions have arrived for `give_up_s`.
     bool done() const noexcept;
+    /// Returns whether the loop ends without a further request once the brakes had time to close.
+    bool ends_itself() const noexcept { return told_ || config_.safe_stop.mode == StopMode::limp; }
     /// Reference of the last tick.
     const Reference& reference() const noexcept { return references_[tick_ % references_.size()]; }
     /// Reference minus position, measured at the last tick or extrapolated, rad, at the time of the
@@ -146,8 +148,10 @@ class ControlLoop {
 
     /// A sample of a future tick.
     struct EarlySample {
-        std::uint64_t tick;
+        std::uint64_t tick = 0; ///< 0: none
         JointVector position;
+        std::vector<bool> missing;
+        bool found_late = false; ///< by a late tick
     };
 
     void sense(const LoopInput& input);
@@ -170,15 +174,18 @@ class ControlLoop {
     /// Limits the change of the feedback and observer torque `wanted`.
     JointVector gradually(const JointVector& wanted);
     JointVector disturbance();
-    /// Returns the command in effect at the time of this tick's measurement. Null before the first one, and
-    /// if the command was limited or resulted from missing positions.
-    const JointVector* command_then() const noexcept;
+    void learn();
+    /// Returns the command in effect at the time of the measurement of `ago` ticks before this tick's. Null
+    /// before the first one, and if the command was limited or resulted from missing positions.
+    const JointVector* command_then(int ago) const noexcept;
     void hold();
     JointVector holding_torque();
     void begin_braking(Eigen::Index joint);
     void brake();
     void request_brakes();
-    void limit();
+    bool brakes_closed() const noexcept;
+    /// Limits the command. Returns whether it was beyond its limit.
+    bool limit();
     /// Returns the reference at the time of the measurement of `ago` ticks before this tick.
     const Reference& measured_reference(int ago = 0) const noexcept;
     bool moved() const noexcept { return counters_.running > 0; }
@@ -201,11 +208,12 @@ class ControlLoop {
     JointVector excess_;          ///< part of the last command that the limits removed
     JointVector feedback_torque_; ///< part of the command without feed-forward
     int recovery_ = 0;            ///< remaining regular ticks with limited feedback
-    std::optional<EarlySample> early_;
+    EarlySample early_;
     std::vector<bool> missing_; ///< joints without a reading at this tick
-    bool exact_ = false;        ///< all joints had a position of this tick
-    Reference braking_;         ///< reference of joints that brake or hold; empty before
-    std::vector<bool> blind_;   ///< joints that brake without readings
+    std::optional<int>
+        learnable_ago_;       ///< ticks since the sample of this tick, if all its readings are regular
+    Reference braking_;       ///< reference of joints that brake or hold; empty before
+    std::vector<bool> blind_; ///< joints that brake without readings
     std::optional<std::uint64_t> stopped_tick_, brake_tick_;
     std::uint64_t position_tick_ = 0; ///< tick of the last sample
     bool told_ = false;               ///< a stop was requested

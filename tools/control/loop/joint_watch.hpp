@@ -17,7 +17,7 @@ namespace dfdyn::tools {
 ///
 /// Either of two conditions shows that a joint must have moved:
 /// - Speed: with an eighth of `acceleration` it could not stop within two quantization steps (the smallest
-///   step so far) plus four noise bounds of the feedback. The speed is the smaller one of the
+///   step so far) plus four noise bounds of the filter. The speed is the smaller one of the
 ///   present velocity and its mean over ten readings: a joint that vibrates or sticks has a velocity, too.
 ///   The repeated readings are then not used: see `repeated`.
 /// - Reference: it has since covered eight quantization steps and `sticking`, so that friction cannot hold

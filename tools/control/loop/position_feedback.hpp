@@ -72,11 +72,17 @@ class PositionFeedback {
     const JointVector& velocity() const noexcept { return velocity_; }
     /// Smallest step between two successive readings of `joint` so far, rad: its encoder's count. 0: none.
     double smallest_step(Eigen::Index joint) const noexcept { return smallest_step_[joint]; }
+    /// Noise bound that the filter was given, rad.
+    double given_noise_bound() const noexcept { return filter_.noise_bound; }
     /// Noise bound of the window of `joint`, rad.
     double noise_bound(Eigen::Index joint) const noexcept;
     /// Ticks since the last reading of `joint`.
     std::int64_t age(Eigen::Index joint) const noexcept {
         return tick_ - newest_tick_[static_cast<std::size_t>(joint)];
+    }
+    /// Returns whether a reading of `joint` was added in this tick, of whatever age.
+    bool observed(Eigen::Index joint) const noexcept {
+        return tick_ == observed_tick_[static_cast<std::size_t>(joint)];
     }
     /// Returns the ticks since the last reading of the joint that has waited longest.
     int longest_silence() const noexcept;

@@ -37,7 +37,7 @@ std::optional<int> SampleClock::contradiction(std::int64_t stamp_ns, int latenes
     return lateness > 0 && lateness <= max_age ? std::optional(lateness) : std::nullopt;
 }
 
-std::optional<int> SampleClock::place(std::int64_t stamp_ns) noexcept {
+std::optional<int> SampleClock::place(std::int64_t stamp_ns, bool late) noexcept {
     silent_ = std::max(0, silent_ - 1); // this tick has a sample
     if (!started_) {
         started_ = true;
@@ -46,6 +46,9 @@ std::optional<int> SampleClock::place(std::int64_t stamp_ns) noexcept {
         return 0;
     }
     const int lateness = ticks_from_expected(stamp_ns);
+    if (late && lateness > 0 && lateness <= max_age) {
+        return lateness;
+    }
     if (!follows(lateness)) {
         return contradiction(stamp_ns, lateness);
     }

@@ -15,6 +15,7 @@ namespace dfdyn::tools {
 /// - A sample with a later stamp, by at most `max_age`, belongs to a future tick, and a late tick finds it.
 /// - Any other stamp contradicts the count, and the sample is not used. After `adopt_after` successive
 ///   samples with the same contradiction, the clock has jumped, and their stamps become the expected ones.
+///   A later stamp in a late tick is no contradiction.
 ///
 /// Stamps within 0.6 of a period of the last assigned one count as the same tick (hysteresis against jitter).
 class SampleClock {
@@ -27,12 +28,13 @@ class SampleClock {
     /// Begins the next tick.
     void advance() noexcept {
         ++tick_;
-        ++silent_;
+        silent_ += silent_ <= max_age ? 1 : 0;
     }
 
     /// Returns the number of ticks from the expected time to the sample's (0: expected, negative: older,
     /// positive: of a future tick), or nothing for an invalid stamp. Call at most once per tick. O(1).
-    std::optional<int> place(std::int64_t stamp_ns) noexcept;
+    /// `late`: this tick began after its deadline.
+    std::optional<int> place(std::int64_t stamp_ns, bool late = false) noexcept;
 
     /// Expected measurement time of this tick's sample, on the clock of the stamps; undefined before the
     /// first sample.
@@ -48,7 +50,7 @@ class SampleClock {
     std::int64_t base_ns_ = 0; ///< expected stamp of tick 0
     bool started_ = false;
     int lateness_ = 0;  ///< of the last sample that was used; not positive
-    int silent_ = 0;    ///< ticks without a sample since that one
+    int silent_ = 0;    ///< ticks without a sample since that one; not counted beyond `max_age`
     int candidate_ = 0; ///< lateness of the last `run_` contradicting samples
     int run_ = 0;
 };

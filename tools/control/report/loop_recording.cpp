@@ -32,8 +32,8 @@ LoopRecording::LoopRecording(int joints, int every, double period_s, double dura
 
 void LoopRecording::add(const LoopInput& input) {
     const bool due = tick_++ % every_ == 0;
-    if (due && input.position != nullptr && input.torque != nullptr &&
-        time_ns_.size() < time_ns_.capacity()) {
+    const bool measured = input.position != nullptr && input.missing == nullptr && input.torque != nullptr;
+    if (due && measured && time_ns_.size() < time_ns_.capacity()) {
         time_ns_.push_back(input.time_ns);
         std::ranges::copy(*input.position, std::back_inserter(values_));
         std::ranges::copy(*input.torque, std::back_inserter(values_));

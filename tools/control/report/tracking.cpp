@@ -6,15 +6,17 @@
 namespace dfdyn::tools {
 
 void Tracking::add(double time_s, const JointVector& error, const JointVector& learned_share) {
-    if (time_s >= static_cast<double>(windows_.size() + 1) * window_s_) {
-        close();
-    }
     if (count_ == 0) {
         squares_ = shares_ = JointVector::Zero(error.size());
     }
     squares_ += error.cwiseAbs2();
     shares_ += learned_share;
     ++count_;
+    const double end_s = static_cast<double>(windows_.size() + 1) * window_s_;
+    const double rounding_s = 1e-6 * period_s_;
+    if (time_s + period_s_ >= end_s - rounding_s) {
+        close();
+    }
 }
 
 void Tracking::close() {

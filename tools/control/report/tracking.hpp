@@ -15,10 +15,11 @@ struct TrackingWindow {
     JointVector learned; ///< mean share of the learned model in the feed-forward
 };
 
-/// Collects tracking errors window by window; the last, incomplete one is left out.
+/// Collects tracking errors window by window; the last one is left out if it is incomplete.
 class Tracking {
   public:
-    explicit Tracking(double window_s = 5) : window_s_(window_s) {}
+    /// `window_s`: at least `period_s`, the time from one error to the next.
+    Tracking(double window_s, double period_s) : window_s_(window_s), period_s_(period_s) {}
 
     /// `error`: reference minus true position, rad. Times must increase, starting at 0.
     void add(double time_s, const JointVector& error, const JointVector& learned_share);
@@ -28,7 +29,7 @@ class Tracking {
   private:
     void close();
 
-    double window_s_;
+    double window_s_, period_s_;
     std::vector<TrackingWindow> windows_;
     JointVector squares_, shares_;
     long count_ = 0;

@@ -87,6 +87,35 @@ TEST_CASE("on a bus without measured torque the commanded torque is used") {
     CHECK((*line.tick(at(31)).torque)[0] == 7);
 }
 
+TEST_CASE("the commanded torque belongs to the time of the delayed position") {
+    Line line(one_drive(at_timer, "i"));
+    REQUIRE(line.port().delay_ticks() == 2);
+    LoopInput input;
+    for (int tick = 0; tick < 40; ++tick) {
+        input = line.tick(at(tick));
+        if (tick >= 30) {
+            REQUIRE(input.torque != nullptr);
+            CHECK((*input.torque)[0] ==
+                  tick - 3); // sent a tick before the measurement, which is two ticks old
+        }
+        line.port().send(line.bus, JointVector::Constant(1, tick));
+    }
+}
+
+TEST_CASE("devices that measure at any time within a tick get the commanded torque") {
+    Line line(one_drive(at_set, "i"));
+    line.jump_ns = -7 * period / 10;
+    for (int tick = 0; tick < 40; ++tick) {
+        const LoopInput input = line.tick(at(tick));
+        if (tick >= 30) {
+            REQUIRE(input.position != nullptr);
+            REQUIRE(input.torque != nullptr);
+            CHECK((*input.torque)[0] == tick - 1);
+        }
+        line.port().send(line.bus, JointVector::Constant(1, tick));
+    }
+}
+
 TEST_CASE("a silent drive or an impossible position gives ticks without position and the reason") {
     Line line(one_drive(at_timer));
     for (int tick = 0; tick < 30; ++tick) {

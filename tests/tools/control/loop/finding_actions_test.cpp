@@ -59,7 +59,7 @@ Outcome run(const std::string& fault, const std::vector<std::string>& choices, d
     limits.observer_bandwidth = {0};
     limits.actions = FindingActions(choices, "--on-finding");
     ClosedLoop loop(test_pendulum(), scenario, "test", &model, nullptr, limits);
-    Tracking tracking(1);
+    Tracking tracking(1, 1 / scenario.controller.rate_hz);
     Outcome outcome;
     loop.run_to(duration_s, [&](const ClosedLoopInstant& instant) {
         tracking.add(instant.time_s, instant.error, loop.loop().feed_forward().learned_share());

@@ -37,7 +37,7 @@ class Joint {
         feedback_.advance();
         watch.read(reading, target.position, feedback_, {missing});
         const std::vector<bool> unused{missing || watch.repeated()[0]};
-        feedback_.observe(0, reading, target, &unused);
+        feedback_.observe(ticks_ago, reading, target, &unused);
         if (feedback_.position().size() > 0) {
             watch.move(feedback_, JointVector::Constant(1, command));
         }
@@ -47,6 +47,7 @@ class Joint {
 
     double offset = 0;    ///< of the encoder
     bool missing = false; ///< no reading in this tick
+    int ticks_ago = 0;    ///< age of the readings
     JointWatch watch{limits(), period_s};
 
   private:
@@ -150,6 +151,19 @@ TEST_CASE("overspeed needs three readings after the filter's lag and one wrong r
     } while (joint.tick(position) == StopCause::none);
     CHECK(joint.watch.cause() == StopCause::overspeed);
     CHECK(readings <= 12); // the lag of the filter plus three readings
+}
+
+TEST_CASE("overspeed is detected from readings that are a tick old") {
+    Joint joint;
+    joint.ticks_ago = 1;
+    for (int tick = 0; tick < 50; ++tick) {
+        REQUIRE(joint.tick(1.9 * period_s * tick) == StopCause::none);
+    }
+    StopCause cause = StopCause::none;
+    for (int reading = 1; reading <= 12; ++reading) {
+        cause = joint.tick(1.9 * period_s * 49 + 2.2 * period_s * reading);
+    }
+    CHECK(cause == StopCause::overspeed);
 }
 
 TEST_CASE("a joint that presses at its torque limit without moving stops and one that moves does not") {

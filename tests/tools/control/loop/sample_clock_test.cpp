@@ -22,10 +22,10 @@ class Line {
         }
     }
     /// Advances by one tick that receives the sample of tick `k`, with a stamp that is `jump_ns` ahead.
-    std::optional<int> tick(int k, std::int64_t jump_ns = 0) {
+    std::optional<int> tick(int k, std::int64_t jump_ns = 0, bool late = false) {
         clock.advance();
         ++next;
-        return clock.place(k * period + jump_ns);
+        return clock.place(k * period + jump_ns, late);
     }
     void silent_tick() {
         clock.advance();
@@ -77,6 +77,25 @@ TEST_CASE("a sample of the next tick is recognised") {
     CHECK(line.tick(11) == 1); // received in a late tick
     line.silent_tick();        // the tick made up for at once
     CHECK(line.tick(12) == 0);
+}
+
+TEST_CASE("ticks that are late several times in a row do not move the clock") {
+    Line line;
+    for (int k = 10; k < 15; ++k) {
+        CHECK(line.tick(k + 1, 0, true) == 1);
+    }
+    line.silent_tick(); // on time again: its sample is known
+    for (int k = 16; k < 30; ++k) {
+        CHECK(line.tick(k) == 0);
+    }
+}
+
+TEST_CASE("a wait for the first sample after the start may have any length") {
+    Line line;
+    for (int k = 0; k < 1000; ++k) {
+        line.silent_tick();
+    }
+    CHECK(line.tick(line.next - SampleClock::max_age) == -SampleClock::max_age);
 }
 
 TEST_CASE("stamps that jump are accepted once they have been consistent") {

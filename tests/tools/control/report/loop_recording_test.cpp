@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace loop_recording_test {
 
@@ -36,6 +37,20 @@ TEST_CASE("a recording keeps one row in every n ticks if position and torque wer
     LoopRecording recording(2, 2, 0.001, 1);
     record(recording, 8);
     CHECK(written(recording) == "t,q1,q2,tau1,tau2\n0,0,0.5,0,2\n0.002,2,0.5,-2,2\n0.006,6,0.5,-6,2\n");
+}
+
+TEST_CASE("a tick with a position held from the one before is not recorded") {
+    LoopRecording recording(1, 1, 0.001, 1);
+    const JointVector value = JointVector::Constant(1, 1);
+    const std::vector<bool> missing{true};
+    for (int tick = 0; tick < 3; ++tick) {
+        LoopInput input;
+        input.time_ns = std::int64_t{1'000'000} * tick;
+        input.position = input.torque = &value;
+        input.missing = tick == 1 ? &missing : nullptr;
+        recording.add(input);
+    }
+    CHECK(written(recording) == "t,q1,tau1\n0,1,1\n0.002,1,1\n");
 }
 
 TEST_CASE("a recording ends after its duration and allocates no memory while it runs") {

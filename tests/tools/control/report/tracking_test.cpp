@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace tracking_test {
 
@@ -21,7 +22,7 @@ JointVector two(double first, double second) {
 
 /// Errors of 3 and 4 mrad for one second, then of 6 and 8 mrad for one and a half seconds.
 std::vector<TrackingWindow> windows() {
-    Tracking tracking(1);
+    Tracking tracking(1, 0.01);
     for (int tick = 0; tick < 250; ++tick) {
         const double scale = tick < 100 ? 1e-3 : 2e-3;
         const double sign = tick % 2 == 0 ? 1 : -1;
@@ -41,6 +42,16 @@ TEST_CASE("the tracking error is the root mean square of each complete window") 
     CHECK(result[1].all == Approx(10e-3 / std::sqrt(2)));
     CHECK(result[0].learned[1] == Approx(0.25));
     CHECK(result[1].learned[1] == Approx(0.75));
+}
+
+TEST_CASE("the last window counts if its ticks are complete") {
+    for (const auto& [ticks, complete] : {std::pair(199, 1U), std::pair(200, 2U), std::pair(201, 2U)}) {
+        Tracking tracking(1, 0.01);
+        for (int tick = 0; tick < ticks; ++tick) {
+            tracking.add(0.01 * tick, two(1, 1), two(0, 0));
+        }
+        CHECK(tracking.windows().size() == complete);
+    }
 }
 
 TEST_CASE("runs are printed side by side with the first run's error divided by the last run's") {

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stop of a ControlLoop: braking, holding, brakes and end.
+#include "tools/control/loop/control_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// Returns whether the last output of feedback and observer is unreliable because something blocked the arm
+/// or a reading was wrong.
+bool opposed(StopCause cause, const std::optional<TakenAction>& stop) {
+    const bool pushed = cause == StopCause::finding && stop &&
+                        (stop->cause == Cause::contact || stop->cause == Cause::frozen);
+    return pushed || cause == StopCause::following_error || cause == StopCause::torque_limit ||
+           cause == StopCause::frozen_encoder;
+}
+
+} // namespace
+
+void ControlLoop::hold() {
+    request_brakes();
+    command_ = slowly(limp() ? zero_ : holding_torque());
+}
+
+void ControlLoop::begin_braking(Eigen::Index joint) {
+    const double age_s = config_.period_s * static_cast<double>(feedback_.age(joint));
+    braking_.velocity[joint] = feedback_.velocity()[joint];
+    braking_.acceleration[joint] = -braking_.velocity[joint] / stop_time_s;
+    braking_.position[joint] = feedback_.position()[joint] + age_s * braking_.velocity[joint];
+}
+
+void ControlLoop::brake() {
+    if (braking_.position.size() == 0) {
+        braking_ = {zero_, zero_, zero_};
+        for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
+            begin_braking(joint);
+        }
+    }
+    for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
+        const auto j = static_cast<std::size_t>(joint);
+        if (blind_[j] && damped(joint)) { // brakes from the present position because readings have returned
+            begin_braking(joint);
+        }
+        blind_[j] = !damped(joint);
+        const double before = braking_.velocity[joint];
+        const double after = before + config_.period_s * braking_.acceleration[joint];
+        if (after * before <= 0) {
+            braking_.velocity[joint] = braking_.acceleration[joint] = 0;
+        } else {
+            braking_.position[joint] += config_.period_s * (before + after) / 2;
+            braking_.velocity[joint] = after;
+        }
+    }
+}
+
+JointVector ControlLoop::holding_torque() {
+    brake();
+    Reference where = braking_; // reference at the measured position
+    for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
+        where.position[joint] = damped(joint) ? feedback_.position()[joint] : where.position[joint];
+    }
+    JointVector torque = feed_forward_.holding(where);
+    if (!opposed(safe_stop_.cause(), actions_.stop())) {
+        torque += joint_vector(observer_.lasting());
+    }
+    for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
+        if (damped(joint)) {
+            const double most = spring_share * config_.torque_limit[joint];
+            const double spring = std::max(0.0, config_.gains.position[joint]) *
+                                  (braking_.position[joint] - feedback_.position()[joint]);
+            torque[joint] += std::clamp(spring, -most, most);
+            torque[joint] += std::max(0.0, config_.gains.velocity[joint]) *
+                             (braking_.velocity[joint] - feedback_.velocity()[joint]);
+        }
+    }
+    return torque;
+}
+
+void ControlLoop::request_brakes() {
+    constexpr double rest_speed = 0.05; // rad/s, m/s
+    if (brake_tick_) {
+        return;
+    }
+    bool blind = false, rests = true;
+    for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
+        blind = blind || !damped(joint);
+        rests = rests && damped(joint) && std::abs(feedback_.velocity()[joint]) <= rest_speed;
+    }
+    const bool stopped = state() == LoopState::stopped;
+    stopped_tick_ = stopped && !stopped_tick_ ? counters_.ticks : stopped_tick_;
+    const double waited_s =
+        stopped ? config_.period_s * static_cast<double>(counters_.ticks - *stopped_tick_) : 0;
+    if (blind || (stopped && (rests || waited_s >= brake_timeout_s))) {
+        brake_tick_ = counters_.ticks;
+    }
+}
+
+bool ControlLoop::brakes_closed() const noexcept {
+    return brake_tick_ &&
+           counters_.ticks - *brake_tick_ >= static_cast<std::uint64_t>(config_.safe_stop.brake_ticks);
+}
+
+bool ControlLoop::limp() const noexcept {
+    return config_.safe_stop.mode == StopMode::limp && state() == LoopState::stopped && brakes_closed();
+}
+
+bool ControlLoop::done() const noexcept {
+    const double silent_s = config_.period_s * static_cast<double>(counters_.ticks - position_tick_);
+    const bool over = told_ || limp() || silent_s >= give_up_s;
+    return state() == LoopState::stopped && (!moved() || (brakes_closed() && over));
+}
+
+} // namespace dfdyn::tools
