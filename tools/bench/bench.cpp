@@ -22,9 +22,11 @@ void append_size(std::vector<BenchTarget>& targets, const TickBench& bench, int 
                        fastest->times.median / ours->times.median, 2, false});
     targets.push_back({at_columns("times faster than Eigen's Cholesky route", columns),
                        cholesky->times.median / ours->times.median, 8, false});
-    if (const TickResult* gurls = fastest_of(bench, BenchLearner::Kind::gurls, "double", columns)) {
-        targets.push_back({at_columns("times faster than " + gurls->learner + " (double)", columns),
-                           gurls->times.median / ours->times.median, 30, false});
+    const TickResult* gurls = fastest_of(bench, BenchLearner::Kind::gurls, "double", columns);
+    const TickResult* ours_in_double = find_ours(bench, "double", columns);
+    if (gurls != nullptr && ours_in_double != nullptr) {
+        targets.push_back({at_columns("times faster than " + gurls->learner + ", both in double", columns),
+                           gurls->times.median / ours_in_double->times.median, 30, false});
     }
 }
 
