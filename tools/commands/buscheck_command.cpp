@@ -145,10 +145,12 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
     command->add_option("--log", options->log, "Log to check, in the format of candump -L")
         ->type_name("L.log");
     command->add_option("--from", options->log_interface, "Interface in the log, if it contains several")
+        ->needs("--log")
         ->type_name("IFACE");
     command
         ->add_option("--duration", options->duration_s,
                      "With --can: seconds to check; Ctrl-C ends the check earlier")
+        ->needs("--can")
         ->check(number_in(0.1, 1e6))
         ->capture_default_str()
         ->type_name("S");

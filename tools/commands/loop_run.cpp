@@ -63,6 +63,11 @@ LoopParts read_parts(const LoopOptions& options) {
     if (!options.folder.empty()) {
         check_folder(options.folder);
     }
+    if (options.window_s * parts.scenario.controller.rate_hz < 1) {
+        throw InputError("loop: --window: expected at least a period of the loop, " +
+                         number_text(1 / parts.scenario.controller.rate_hz) + " s, found " +
+                         number_text(options.window_s));
+    }
     return parts;
 }
 
@@ -169,7 +174,7 @@ SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options,
                     controller.learned ? &*parts.model : nullptr, parts.bus ? &*parts.bus : nullptr, limits);
     const std::string& name = controller.name;
     LoopRecording recording = make_recording(parts, options);
-    Tracking tracking(options.window_s);
+    Tracking tracking(options.window_s, 1 / parts.scenario.controller.rate_hz);
     LoopPeaks peaks;
     Progress progress("simulating " + name, static_cast<std::size_t>(options.duration_s * 1000));
     loop.run_to(options.duration_s, [&](const ClosedLoopInstant& instant) {
@@ -230,7 +235,7 @@ int run_on_bus(const LoopOptions& options) {
     const auto loop =
         make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
                           parts.model ? &*parts.model : nullptr, port.delay_ticks(), options.limits);
-    LoopLog log{Tracking(options.window_s), make_recording(parts, options)};
+    LoopLog log{Tracking(options.window_s, period_s), make_recording(parts, options)};
     const PaceOutcome pace = run_loop(
         *loop, port,
         {options.interface, period_s, options.duration_s, stop_on_signals(), &toggle_on_signal()}, log);
@@ -269,6 +274,12 @@ int run_loop_command(LoopOptions& options) {
         if (options.model.empty() && given) {
             throw InputError(std::string("loop: ") + name + ": expected --model, found none");
         }
+    }
+    if (options.model.empty() && (options.from_prior || !options.limits.learned_limit.empty())) {
+        throw InputError("loop: --from-prior and --learned-limit: expected --model, found none");
+    }
+    if (options.simulate && options.limits.mode == StopMode::limp) {
+        throw InputError("loop: --stop limp: expected --can, found --simulate, which ends at the stop");
     }
     if (options.on_contact.empty() && options.limits.contact_rate_per_hour) {
         throw InputError("loop: --contact-rate: expected --on-contact, found none");

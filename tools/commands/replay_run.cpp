@@ -3,8 +3,10 @@
 
 #include "tools/base/bag/bag.hpp"
 #include "tools/base/numerics/quantile.hpp"
+#include "tools/base/recording/sample_grid.hpp"
 #include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
+#include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
@@ -21,6 +23,7 @@
 #include "tools/report/report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -47,6 +50,7 @@ void check_usage(const ReplayOptions& options) {
     refuse(bus && options.recordings.has_choice(),
            "--rows, --skip-bad-rows, --columns, --units, --topic: expected a CSV recording, found --bus");
     refuse(!bus && !options.log_interface.empty(), "--from: expected --bus, found a CSV recording");
+    refuse(options.live() && !options.log_interface.empty(), "--from: expected --log, found --can");
     refuse(!options.live() && (options.can.duration_s > 0 || !options.can.record.empty()),
            "--duration, --record: expected --can, found a recording");
     refuse(!options.monitor.wanted() && options.monitor.has_choice(),
@@ -95,7 +99,7 @@ Replaying make_replaying(const ReplayOptions& options, std::span<const TrainedMo
     return replaying;
 }
 
-/// Reads models, which must have the same joints and outputs.
+/// Reads models, which must have the same joints, outputs and sample periods.
 std::vector<TrainedModel> read_models(const std::vector<std::filesystem::path>& paths) {
     std::vector<TrainedModel> models;
     for (const std::filesystem::path& path : paths) {
@@ -107,8 +111,33 @@ std::vector<TrainedModel> read_models(const std::vector<std::filesystem::path>& 
                              ", " + std::to_string(first.joints) + " and " + listed(first.outputs.names) +
                              ", found " + std::to_string(last.joints) + " and " + listed(last.outputs.names));
         }
+        if (std::abs(last.sample_period_s / first.sample_period_s - 1) > followed_deviation) {
+            throw InputError(shown(path) + ": expected the sample period of " + shown(paths.front()) + ", " +
+                             rounded_text(first.sample_period_s) + " s, found " +
+                             rounded_text(last.sample_period_s) + " s");
+        }
     }
     return models;
+}
+
+/// Reads the recordings as the model's training did, unless the options say otherwise.
+std::vector<Recording> read_recordings(const ReplayOptions& options, std::span<const TrainedModel> models,
+                                       ReadOptions columns) {
+    const TrainingRecord& trained = models.front().training;
+    columns.joint_names = trained.joint_names;
+    RecordingOptions recordings = options.recordings;
+    if (std::ranges::none_of(recordings.logs, is_bag)) { // a bag has columns and units of its own
+        recordings.columns = recordings.columns.empty() ? trained.columns : recordings.columns;
+        recordings.units = recordings.units.empty() ? trained.units : recordings.units;
+    } else if (recordings.units.empty() && !trained.units.empty()) {
+        print_note("note: a bag is read in rad, N m and A; the model's recordings had --units " +
+                   trained.units);
+    }
+    std::vector<Recording> read = recordings.read(columns);
+    for (const Recording& recording : read) {
+        check_not_faster(recording, models.front().sample_period_s, shown(options.models.front()));
+    }
+    return read;
 }
 
 std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::span<const TrainedModel> models,
@@ -120,15 +149,8 @@ std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::spa
     const PhysicsModel* const physics = rigid_body_of(models);
     columns.velocity = columns.acceleration =
         physics != nullptr || std::ranges::any_of(models, needs_derivatives);
-    const TrainingRecord& trained = models.front().training;
-    columns.joint_names = trained.joint_names;
-    RecordingOptions recordings = options.recordings;
-    if (std::ranges::none_of(recordings.logs, is_bag)) { // a bag has columns and units of its own
-        recordings.columns = recordings.columns.empty() ? trained.columns : recordings.columns;
-        recordings.units = recordings.units.empty() ? trained.units : recordings.units;
-    }
     std::vector<ReplayedRecording> replayed;
-    for (const Recording& recording : recordings.read(columns)) {
+    for (const Recording& recording : read_recordings(options, models, columns)) {
         Progress progress("replaying " + recording.source, recording.row_count());
         replayed.push_back(replay(*replaying.estimator, models, recording, options.chosen_horizon(),
                                   [&progress](std::size_t done) { progress.update(done); }));

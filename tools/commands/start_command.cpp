@@ -20,7 +20,6 @@
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
 #include "tools/diagnosis/output/error_sections.hpp"
 #include "tools/diagnosis/recordings/diagnose_recordings.hpp"
-#include "tools/model/file/model_file.hpp"
 #include "tools/replay/contacts/contact_limits.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/replay_csv.hpp"
@@ -286,7 +285,7 @@ int run(StartOptions options) {
     describe_training(model, arm, options);
     replay_held_out(model, split, files);
     files.merge(project_files(model, split.judging.front()));
-    files["model.json"] = model_to_json(model);
+    files["model.json"] = checked_json(model, options.folder / "model.json");
     files["README.txt"] =
         "Written by dfdyn start. Next, in the folder above this one:\n" + next_steps(options);
     write_folder(options.folder, files);

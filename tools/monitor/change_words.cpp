@@ -2,6 +2,8 @@
 #include "tools/monitor/change_words.hpp"
 
 #include "tools/base/numerics/dynamic_storage.hpp"
+#include "tools/model/output_units.hpp"
+#include "tools/robot/joint_unit.hpp"
 
 #include <algorithm>
 
@@ -10,14 +12,6 @@ namespace dfdyn::tools {
 namespace {
 
 std::string numbered(const char* what, int index) { return what + std::to_string(index + 1); }
-
-/// Returns the unit of an output: N·m, N or A.
-std::string unit_of(const std::string& output) {
-    if (output.starts_with("i")) {
-        return "A";
-    }
-    return output.starts_with("f") ? "N" : "N·m";
-}
 
 /// Returns true for currents without torque constants. Sizes are then in amperes.
 bool per_current(const MonitorSetup& setup) {
@@ -39,12 +33,24 @@ void describe_payload(const Change<float, m>& change, const MonitorSetup& setup,
 }
 
 template <int m>
+void describe_friction(const Change<float, m>& change, const MonitorSetup& setup, NamedChange& named) {
+    const bool prismatic = setup.chain.joints[static_cast<std::size_t>(change.where)].prismatic;
+    const auto unit = [&](const char* current, const char* torque) {
+        return unit_at_joint(per_current(setup) ? current : torque, prismatic);
+    };
+    named.where = numbered("joint", change.where);
+    named.parameters = {{"coulomb", unit("A", "N·m"), static_cast<double>(change.size[0])},
+                        {"viscous", unit("A·s/rad", "N·m·s/rad"), static_cast<double>(change.size[1])}};
+}
+
+template <int m>
 void describe_bias(const Change<float, m>& change, const MonitorSetup& setup, NamedChange& named) {
     named.where = setup.chain.sensor ? "ft_sensor" : numbered("joint", change.where);
+    const std::vector<std::string> units = output_units(setup.outputs, &setup.chain);
     for (std::size_t k = 0; k < setup.outputs.size(); ++k) {
         const auto moved = static_cast<double>(change.bias[static_cast<int>(k)]);
         if (moved != 0) {
-            named.parameters.push_back({setup.outputs[k], unit_of(setup.outputs[k]), moved});
+            named.parameters.push_back({setup.outputs[k], units[k], moved});
         }
     }
 }
@@ -60,9 +66,10 @@ void describe_contact(const Change<float, m>& change, const MonitorSetup& setup,
         }
         return;
     }
-    const std::string& output = setup.outputs[static_cast<std::size_t>(change.where)];
     named.where = setup.chain.sensor ? "ft_sensor" : numbered("joint", change.where);
-    named.parameters.push_back({"mean", unit_of(output), static_cast<double>(change.size[0])});
+    const std::vector<std::string> units = output_units(setup.outputs, &setup.chain);
+    named.parameters.push_back(
+        {"mean", units[static_cast<std::size_t>(change.where)], static_cast<double>(change.size[0])});
 }
 
 template <int m>
@@ -73,10 +80,7 @@ void describe(const Change<float, m>& change, const MonitorSetup& setup, NamedCh
         describe_payload(change, setup, named);
         break;
     case Cause::friction:
-        named.where = numbered("joint", change.where);
-        named.parameters = {
-            {"coulomb", per_current(setup) ? "A" : "N·m", static_cast<double>(change.size[0])},
-            {"viscous", per_current(setup) ? "A·s/rad" : "N·m·s/rad", static_cast<double>(change.size[1])}};
+        describe_friction(change, setup, named);
         break;
     case Cause::bias:
         describe_bias(change, setup, named);

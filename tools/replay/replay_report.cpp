@@ -3,6 +3,7 @@
 
 #include "tools/base/text/number.hpp"
 #include "tools/build_flags.hpp"
+#include "tools/model/output_units.hpp"
 
 #include <numeric>
 
@@ -12,13 +13,6 @@ namespace {
 
 /// Gap between recordings on the time axis (s), which separates their curves.
 constexpr double pause_between_recordings_s = 1;
-
-std::string unit_of(const std::string& output) {
-    if (output.front() == 'i') {
-        return "A";
-    }
-    return output.front() == 'f' ? "N" : "N·m";
-}
 
 void add_times(std::span<const ReplayedRecording> replayed, const ReplaySummary& summary, Report& report) {
     double offset = 0;
@@ -40,9 +34,9 @@ void add_times(std::span<const ReplayedRecording> replayed, const ReplaySummary&
     }
 }
 
-ReportSeries series_of(std::span<const ReplayedRecording> replayed, const std::string& name,
-                       std::size_t output, std::size_t outputs) {
-    ReportSeries series{name, unit_of(name), {}, {}, {}};
+/// Adds the values of output number `output` of `outputs` to a series that has none.
+void add_values(std::span<const ReplayedRecording> replayed, std::size_t output, std::size_t outputs,
+                ReportSeries& series) {
     for (const ReplayedRecording& recording : replayed) {
         for (std::size_t tick = 0; tick < recording.time_s.size(); ++tick) {
             const std::size_t element = tick * outputs + output;
@@ -51,7 +45,6 @@ ReportSeries series_of(std::span<const ReplayedRecording> replayed, const std::s
             series.standard_deviation.push_back(recording.standard_deviation[element]);
         }
     }
-    return series;
 }
 
 std::vector<ReportCell> table_row(const std::string& label, const std::vector<double>& values) {
@@ -138,8 +131,10 @@ Report make_replay_report(const TrainedModel& model, std::span<const ReplayedRec
         " samples, predicted by the model as it was before them, relative to the squared output.";
     report.facts = facts_of(model, summary);
     add_times(replayed, summary, report);
-    for (std::size_t k = 0; k < summary.outputs.size(); ++k) {
-        report.series.push_back(series_of(replayed, summary.outputs[k], k, summary.outputs.size()));
+    const std::vector<std::string> units = output_units(model);
+    for (std::size_t k = 0; k < units.size(); ++k) {
+        report.series.push_back({summary.outputs[k], units[k], {}, {}, {}});
+        add_values(replayed, k, units.size(), report.series.back());
     }
     report.innovation = innovation_of(model, replayed);
     return report;

@@ -6,6 +6,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/model/header/model_header.hpp"
+#include "tools/model/output_units.hpp"
 #include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/start/embedded_files.hpp"
@@ -39,13 +40,6 @@ constexpr std::array<std::array<std::string_view, 2>, 4> templates{{
     {"main.cpp.in", "src/main.cpp"},
     {"application.cpp.in", "cortex_m/application.cpp"},
 }};
-
-std::string unit_of(const std::string& output) {
-    if (output.starts_with("tau") || output.starts_with('m')) {
-        return "N m";
-    }
-    return output.starts_with('i') ? "A" : "N";
-}
 
 /// Ticks for the project, and the prediction of the last one.
 struct CheckedTicks {
@@ -87,10 +81,6 @@ void write_texts(std::ostream& out, const char* name, const std::vector<std::str
 
 std::string ticks_header(const TrainedModel& model, const Recording& recording) {
     const CheckedTicks ticks = checked_ticks(model, recording);
-    std::vector<std::string> units;
-    for (const std::string& output : model.outputs.names) {
-        units.push_back(unit_of(output));
-    }
     std::ostringstream header;
     header << "// Rows of the recording that were not used for training, and the last prediction of `dfdyn "
               "replay`.\n"
@@ -99,7 +89,7 @@ std::string ticks_header(const TrainedModel& model, const Recording& recording) 
            << "    float position[robot_model::Model::joints]; // rad (m for prismatic joints)\n"
            << "    float output[robot_model::Model::outputs];\n};\n\n";
     write_texts(header, "output_names", model.outputs.names);
-    write_texts(header, "output_units", units);
+    write_texts(header, "output_units", output_units(model));
     header << "inline constexpr float expected_prediction[robot_model::Model::outputs] = ";
     write_numbers(header, std::vector<double>(ticks.last_prediction.begin(), ticks.last_prediction.end()));
     header << ";\n\ninline constexpr RecordedTick recorded_ticks[] = {\n";

@@ -4,6 +4,7 @@
 #include "dfdyn/core/sample_clock.hpp"
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,9 +49,8 @@ std::vector<double> steps_of_every(std::size_t stride, std::span<const Recording
     return steps_s;
 }
 
-} // namespace
-
-double sample_period_s(std::span<const Recording> recordings) {
+/// Does the same as sample_period_s() without a comparison of the recordings.
+double common_period_s(std::span<const Recording> recordings) {
     std::vector<double> steps_s;
     for (const Recording& recording : recordings) {
         for (std::size_t row = 1; row < recording.row_count(); ++row) {
@@ -66,6 +66,42 @@ double sample_period_s(std::span<const Recording> recordings) {
         period_s = mean_step_s(recordings, period_s);
     }
     return std::abs(period_s / middle_s - 1) <= same_period ? middle_s : period_s;
+}
+
+[[noreturn]] void refuse_period(const Recording& recording, double found_s, double expected_s,
+                                const std::string& where) {
+    throw InputError(recording.source + ": expected a row every " + rounded_text(expected_s) + " s, as in " +
+                     where + ", found one every " + rounded_text(found_s) + " s");
+}
+
+} // namespace
+
+double sample_period_s(std::span<const Recording> recordings) {
+    const Recording* first = nullptr;
+    double first_s = 0;
+    for (const Recording& recording : recordings) {
+        if (recordings.size() < 2 || recording.row_count() < 2) {
+            continue;
+        }
+        const double own_s = common_period_s({&recording, 1});
+        if (first == nullptr) {
+            first = &recording;
+            first_s = own_s;
+        }
+        if (std::abs(own_s / first_s - 1) > followed_deviation) {
+            refuse_period(recording, own_s, first_s, first->source);
+        }
+    }
+    return common_period_s(recordings);
+}
+
+void check_not_faster(const Recording& recording, double period_s, const std::string& model) {
+    if (recording.row_count() > 1) {
+        const double own_s = common_period_s({&recording, 1});
+        if (own_s < (1 - followed_deviation) * period_s) {
+            refuse_period(recording, own_s, period_s, "the training of " + model);
+        }
+    }
 }
 
 SteadyStride steady_stride(std::span<const Recording> recordings) {

@@ -10,10 +10,19 @@
 
 namespace dfdyn::tools {
 
+/// Largest relative deviation of a sample period that SampleClock follows.
+inline constexpr double followed_deviation = 0.125;
+
 /// Returns the sample period (s) of recordings from one sender: the mean of the steps without a loss. If the
 /// median of all steps is within 1 % of the mean, returns the median, which is exact for a steady clock.
-/// Throws InputError for fewer than two rows.
+/// Throws InputError for fewer than two rows, and if the period of a recording differs from that of the
+/// first one by more than `followed_deviation`.
 double sample_period_s(std::span<const Recording> recordings);
+
+/// Throws InputError if the rows of `recording` are closer than a model's sample period by more than
+/// `followed_deviation`. The estimator does not detect this; rows too far apart it treats as gaps. `model`:
+/// named in the message.
+void check_not_faster(const Recording& recording, double period_s, const std::string& model);
 
 /// A number of rows from one to the next with which a recording has constant time steps.
 struct SteadyStride {

@@ -5,16 +5,19 @@
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/header/model_header.hpp"
 
-#include <string>
 #include <vector>
 
 namespace dfdyn::tools {
 
+std::string checked_json(const TrainedModel& model, const std::filesystem::path& path) {
+    std::string content = model_to_json(model);
+    model_from_json(content, shown(path));
+    return content;
+}
+
 void add_model(FileSet& files, const TrainedModel& model, const std::filesystem::path& json,
                const std::filesystem::path& header) {
-    const std::string content = model_to_json(model);
-    model_from_json(content, shown(json)); // nothing is written that `replay` would reject
-    files.add(json, content);
+    files.add(json, checked_json(model, json));
     if (!header.empty()) {
         files.add(header, model_to_header(model, to_identifier(header.stem().string())));
     }

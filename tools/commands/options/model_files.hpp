@@ -8,11 +8,15 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace dfdyn::tools {
 
+/// Returns the content of model.json. Throws InputError, naming `path`, if `replay` would reject it.
+std::string checked_json(const TrainedModel& model, const std::filesystem::path& path);
+
 /// Adds the model as `json` and, unless `header` is empty, as a header in a namespace named as that file.
-/// Throws InputError if `replay` would reject the model.
+/// Throws as checked_json().
 void add_model(FileSet& files, const TrainedModel& model, const std::filesystem::path& json,
                const std::filesystem::path& header);
 
