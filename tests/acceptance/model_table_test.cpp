@@ -134,11 +134,14 @@ class Row {
         return model_.outputs.offset[static_cast<std::size_t>(k)] + noise(k) * prediction;
     }
 
+    /// NaN is worse than any error.
+    static void keep_worst(double& worst, double error) { worst = error <= worst ? worst : error; }
+
     void compare(std::span<const float> prediction, const DenseSolution& solution, Index row) {
         for (Index k = 0; k < regression_.outputs(); ++k) {
             const auto value = static_cast<double>(prediction[static_cast<std::size_t>(k)]);
             const double error = std::abs(value - in_units(solution.prediction(row, k), k)) / deviation(k);
-            worst_.prediction = std::max(worst_.prediction, error);
+            keep_worst(worst_.prediction, error);
         }
     }
 
@@ -146,7 +149,7 @@ class Row {
         for (Index k = 0; k < regression_.outputs(); ++k) {
             const auto value = static_cast<double>(deviations[static_cast<std::size_t>(k)]);
             const double truth = noise(k) * solution.standard_deviation(row, k);
-            worst_.standard_deviation = std::max(worst_.standard_deviation, std::abs(value / truth - 1));
+            keep_worst(worst_.standard_deviation, std::abs(value / truth - 1));
         }
     }
 
@@ -161,7 +164,7 @@ class Row {
             for (Index k = 0; k < regression_.outputs(); ++k) {
                 const double error =
                     regression_.predicted_by_start(restarted, row, k) - solution.prediction(row, k);
-                worst_.start = std::max(worst_.start, std::abs(error) * noise(k) / deviation(k));
+                keep_worst(worst_.start, std::abs(error) * noise(k) / deviation(k));
             }
         }
     }

@@ -30,7 +30,7 @@ void set_wall_clock_by(std::int64_t seconds) {
 
 TEST_CASE("setting the wall clock does not change the stamps") {
     if (!dfdyn::tests::own_machine()) {
-        WARN("not run: the clock of this machine is not ours to set");
+        WARN("not judged: the clock of this machine is not ours to set");
         return;
     }
     const std::int64_t step_s = GENERATE(3600, -3600, -2, 2);

@@ -128,7 +128,7 @@ TEST_CASE("a sample learned in slices changes the prediction when it is complete
     CHECK(learned.tick_cost() < 2 * Estimator<Kernel>::cost().predict + Estimator<Kernel>::cost().learn);
 }
 
-TEST_CASE("NaN or a prediction beyond the model's limit is reported and gives zeros") {
+TEST_CASE("a prediction beyond the model's limit is reported and gives zeros") {
     DFDYN_SEEDED_ENGINE(engine);
     auto constants = make_constants<Kernel>(engine);
     constants.prediction_limit = {{3, 3}};
@@ -143,6 +143,31 @@ TEST_CASE("NaN or a prediction beyond the model's limit is reported and gives ze
         REQUIRE((known || (torque[0] == 0 && torque[1] == 0)));
     }
     CHECK(refused > 20);
+}
+
+TEST_CASE("a prediction that is not finite is reported and gives zeros, without a limit") {
+    DFDYN_SEEDED_ENGINE(engine);
+    auto constants = make_constants<Kernel>(engine);
+    REQUIRE((constants.prediction_limit[0] == 0 && constants.prediction_limit[1] == 0));
+    LearnedTorque<Kernel> learned(constants, 1);
+    constexpr float rest[] = {0.3F, 0.4F};
+    float torque[] = {9, 9};
+    learned.begin(0, rest);
+    REQUIRE(learned.predict(period_ns, rest, torque));
+    const auto sound = constants.output_offset;
+    using Limits = std::numeric_limits<float>;
+    for (const float offset : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
+        for (const int output : {0, 1}) {
+            CAPTURE(offset, output);
+            constants.output_offset = sound;
+            constants.output_offset[output] = offset;
+            torque[0] = torque[1] = 9;
+            learned.begin(0, rest);
+            CHECK_FALSE(learned.predict(period_ns, rest, torque));
+            CHECK(torque[0] == 0);
+            CHECK(torque[1] == 0);
+        }
+    }
 }
 
 TEST_CASE("a NaN reference is reported, and has no effect after one window") {

@@ -157,6 +157,10 @@ TEST_CASE("with --quiet a command keeps warnings and errors, and drops notes") {
     CHECK_THAT(run_program(directory, train + "--prior unit -o " + in + "/m.json").error,
                ContainsSubstring("--prior is ignored"));
     CHECK(run_program(directory, train + "--quiet --prior unit -o " + in + "/m.json").error.empty());
+    const std::string torn =
+        directory.write("torn.log", "(1.000000) can0 281#0102\n(1.001000) can0 28").string();
+    CHECK_THAT(run_program(directory, "buscheck --quiet --log " + torn).error,
+               ContainsSubstring("warning: ") && ContainsSubstring(" is torn and left out"));
     directory.write("bad.csv", "t,q1,i1\n0,1,2\n0,1,2\n");
     CHECK_THAT(
         run_program(directory, "train --quiet --log " + in + "/bad.csv --outputs i -o " + in + "/x").error,

@@ -150,7 +150,7 @@ TEST_CASE("given limits stop a loop that exceeds them and invalid limits are rej
     const Outcome error = bench.loop(simulate + bus + " --following-error 0.0001");
     CHECK(error.status == 1);
     CHECK_THAT(error.out, ContainsSubstring("stopped (following_error of joint 2)"));
-    const Outcome speed = bench.loop(simulate + bus + " --speed-limit 20,0.1 --stop limp");
+    const Outcome speed = bench.loop(simulate + bus + " --speed-limit 20,0.1");
     CHECK(speed.status == 1);
     CHECK_THAT(speed.out, ContainsSubstring("stopped (overspeed of joint 2)"));
     CHECK(bench.loop(simulate + bus + " --following-error 0.4 --speed-limit 15 --stop hold").status == 0);
@@ -158,6 +158,13 @@ TEST_CASE("given limits stop a loop that exceeds them and invalid limits are rej
                ContainsSubstring("--speed-limit: expected 1 value, or one for each of 2 joints, found 3"));
     CHECK(bench.loop(simulate + " --following-error 0").status == 2);
     CHECK(bench.loop(simulate + " --stop soft").status == 2);
+    CHECK_THAT(bench.refusal(simulate + " --stop limp"),
+               ContainsSubstring("--stop limp: expected --can, found --simulate, which ends at the stop"));
+    for (const char* const of_model : {" --from-prior", " --learned-limit 0.2"}) {
+        CHECK_THAT(bench.refusal(simulate + of_model), ContainsSubstring("expected --model, found none"));
+    }
+    CHECK_THAT(bench.refusal(simulate + " --window 0.0001"),
+               ContainsSubstring("--window: expected at least a period of the loop, "));
 }
 
 TEST_CASE("a missing CAN interface is reported by the loop and by the plant") {

@@ -222,7 +222,7 @@ TEST_CASE("an output that cannot be written is rejected before the recording is 
     CHECK_FALSE(std::filesystem::exists(bench.path("m.json")));
 }
 
-TEST_CASE("a replay without any prediction ends with status 1 and the reason") {
+TEST_CASE("a replay without any prediction ends with status 1 and the reason, one of faster rows with 2") {
     const Bench bench("");
     REQUIRE(bench.train("").status == 0);
     Recording recording = right_recording();
@@ -237,6 +237,12 @@ TEST_CASE("a replay without any prediction ends with status 1 and the reason") {
                                   ContainsSubstring(" gap: expected 0.008 s between rows, found 8 s;") &&
                                   ContainsSubstring("check that units, sample period and columns"));
     CHECK(bench.call(replay + bench.path("run.csv")).status == 0);
+    Recording fast = right_recording();
+    scale_clock(fast, 0.25);
+    const Outcome refused = bench.call(replay + directory.write("fast.csv", csv(fast)).string());
+    CHECK(refused.status == 2);
+    CHECK_THAT(refused.error, ContainsSubstring("expected a row every 0.008 s, as in the training of ") &&
+                                  ContainsSubstring(", found one every 0.002 s"));
     Recording far = right_recording();
     for (double& position : far.position.values) {
         position *= 1000;

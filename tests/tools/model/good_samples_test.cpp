@@ -32,7 +32,7 @@ TrainedModel trained_on(const std::string& file) {
 }
 
 struct Outcome {
-    double refused_share = 0;
+    double refused_share = 0, learned_share = 0;
     std::size_t contradictions = 0;
 };
 
@@ -43,7 +43,10 @@ Outcome replayed(const TrainedModel& model, const std::string& file) {
     const auto refused = std::ranges::count_if(result.status, [](const dfdyn::Status& status) {
         return status.learning == dfdyn::Reason::innovation_too_large;
     });
-    return {static_cast<double>(refused) / static_cast<double>(result.status.size()),
+    const auto learned =
+        std::ranges::count_if(result.status, [](const dfdyn::Status& status) { return status.learned(); });
+    const auto rows = static_cast<double>(result.status.size());
+    return {static_cast<double>(refused) / rows, static_cast<double>(learned) / rows,
             find_contradictions(result, model.limits.innovation).size()};
 }
 
@@ -51,7 +54,9 @@ TEST_CASE("a UR5 rejects no good sample of another motion but reports a person's
     const TrainedModel model = trained_on("ur5_kufieta/Movement_No6_Acc_slow_Verify_Model.csv");
     for (const char* motion : {"No7_Acc_slow_Verify_Model_short", "No9_Singularity_Free_NoDist"}) {
         CAPTURE(motion);
-        CHECK(replayed(model, std::string("ur5_kufieta/Movement_") + motion + ".csv").refused_share < 0.001);
+        const Outcome outcome = replayed(model, std::string("ur5_kufieta/Movement_") + motion + ".csv");
+        CHECK(outcome.refused_share < 0.001);
+        CHECK(outcome.learned_share > 0.95);
     }
     const Outcome pushed =
         replayed(model, "ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short_with_disturbance.csv");
@@ -63,7 +68,9 @@ TEST_CASE("a servo rejects no good sample at other gains and along other motions
     for (const char* run : {"04_sin_sin_kp200", "08_sin_sin_kp400", "12_sin_sin_kp800",
                             "14_up_and_down_kp800", "15_sin_time_square_kp800"}) {
         CAPTURE(run);
-        CHECK(replayed(model, std::string("xl330_bam/") + run + ".csv").refused_share < 0.001);
+        const Outcome outcome = replayed(model, std::string("xl330_bam/") + run + ".csv");
+        CHECK(outcome.refused_share < 0.001);
+        CHECK(outcome.learned_share > 0.95);
     }
 }
 

@@ -138,7 +138,14 @@ TEST_CASE("an endless replay keeps its last ticks and passes on all ticks withou
     CHECK(replayed.time_s.size() + replayed.forgotten == 2'000);
     CHECK(replayed.time_s.size() >= 100);
     CHECK(replayed.time_s.size() < 200);
-    CHECK(replayed.predicted.size() == 6 * replayed.time_s.size());
+    const std::size_t kept = replayed.time_s.size();
+    CHECK(replayed.measured.size() == 6 * kept);
+    CHECK(replayed.predicted.size() == 6 * kept);
+    CHECK(replayed.standard_deviation.size() == 6 * kept);
+    CHECK(replayed.normalised_innovation_squared.size() == kept);
+    CHECK(replayed.status.size() == kept);
+    CHECK(replayed.bus_reason.size() == kept);
+    CHECK(replayed.duration_us.size() == kept);
     CHECK(replayed.time_s.back() == recording.time_s.back());
 }
 
@@ -158,6 +165,7 @@ TEST_CASE("a replay of bounded length keeps the indices of its last ticks") {
     const ReplayedRecording found = bounded.finish();
     REQUIRE(!found.horizon.empty());
     for (const HorizonIndex& index : found.horizon) {
+        REQUIRE(index.tick < found.time_s.size());
         const auto same =
             std::ranges::find(expected.horizon, index.tick + found.forgotten, &HorizonIndex::tick);
         REQUIRE(same != expected.horizon.end());

@@ -4,8 +4,8 @@
 #include "tools/base/recording/recording.hpp"
 #include "tools/base/text/error.hpp"
 
-#include <clocale>
 #include <cstdint>
+#include <locale>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -96,11 +96,12 @@ TEST_CASE("harmless differences in the text do not matter") {
 }
 
 TEST_CASE("the locale of the program does not affect reading") {
-    // Valid whether or not this machine has the locale.
-    const std::string previous = std::setlocale(LC_ALL, nullptr);
-    std::setlocale(LC_ALL, "de_DE.UTF-8");
+    struct Comma : std::numpunct<char> {
+        char do_decimal_point() const override { return ','; }
+    };
+    const std::locale previous = std::locale::global(std::locale(std::locale::classic(), new Comma));
     const Recording recording = read("t,q1\n0,1.5\n");
-    std::setlocale(LC_ALL, previous.c_str());
+    std::locale::global(previous);
     CHECK(recording.position.values == Values{1.5});
 }
 

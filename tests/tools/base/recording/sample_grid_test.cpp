@@ -102,4 +102,26 @@ TEST_CASE("a recording of one row has no period") {
         Catch::Matchers::Message("run.csv: expected at least two rows to train on, found one"));
 }
 
+TEST_CASE("recordings whose periods differ by more than an eighth have none in common") {
+    constexpr std::int64_t ms = 1'000'000;
+    std::vector<Recording> recordings{with_stamps(repeated_steps({8 * ms}, 1000)),
+                                      with_stamps(repeated_steps({9 * ms}, 500))};
+    CHECK(sample_period_s(recordings) == Approx(0.008).epsilon(0.1));
+    recordings.back() = with_stamps(repeated_steps({2 * ms}, 500));
+    recordings.back().source = "fast.csv";
+    CHECK_THROWS_MATCHES(sample_period_s(recordings), InputError,
+                         Catch::Matchers::Message("fast.csv: expected a row every 0.008 s, as in run.csv, "
+                                 "found one every 0.002 s"));
+}
+
+TEST_CASE("rows closer than a model's sample period are refused, rows farther apart are not") {
+    const Recording recording = with_stamps(repeated_steps({2'000'000}, 500));
+    CHECK_NOTHROW(check_not_faster(recording, 0.001, "m.json"));
+    CHECK_NOTHROW(check_not_faster(recording, 0.0022, "m.json"));
+    CHECK_THROWS_MATCHES(check_not_faster(recording, 0.008, "m.json"), InputError,
+                         Catch::Matchers::Message("run.csv: expected a row every 0.008 s, as in the training "
+                                                  "of m.json, found one every 0.002 s"));
+    CHECK_NOTHROW(check_not_faster(with_stamps({5}), 0.001, "m.json"));
+}
+
 } // namespace sample_grid_test
