@@ -91,13 +91,29 @@ Diagnosis diagnosis_of(const PanelCase& panel_case, std::span<const Effect> effe
     return diagnose(panel_case.nominal, panel_case.recording, options).diagnosis;
 }
 
-/// Value of the parameter when the effect is absent.
-double null_value(const std::string& effect, const std::string& parameter) {
+const ParameterKind& kind_of(const std::string& effect, const std::string& parameter) {
     const std::vector<ParameterKind>& kinds = effect_named(effect).parameters;
     const auto kind =
         std::ranges::find_if(kinds, [&](const ParameterKind& one) { return parameter == one.name; });
     REQUIRE(kind != kinds.end());
-    return kind->null_value.value_or(0);
+    return *kind;
+}
+
+/// Value of the parameter when the effect is absent.
+double null_value(const std::string& effect, const std::string& parameter) {
+    return kind_of(effect, parameter).null_value.value_or(0);
+}
+
+/// Size of the hidden effect in the unit of the parameter: of a vector its largest component.
+double size_in_unit(const HiddenEffect& hidden, const std::string& parameter) {
+    const std::string unit = kind_of(hidden.effect, parameter).unit;
+    double largest = 0;
+    for (const auto& [name, value] : hidden.parameters) {
+        if (kind_of(hidden.effect, name).unit == unit) {
+            largest = std::max(largest, std::abs(value - null_value(hidden.effect, name)));
+        }
+    }
+    return largest;
 }
 
 /// Returns the faults of a finding's parameters, or an empty text. The main parameter has the test's
@@ -119,7 +135,7 @@ std::string parameter_fault(const HiddenEffect& hidden, const Finding& finding, 
             allowed = 2 * tolerance;
         } else if (name != hidden.parameters.front().first) {
             allowed = std::max(allowed, (found->high - found->low) / 2);
-            if (!(allowed <= std::abs(value - null_value(hidden.effect, name)))) {
+            if (!(allowed <= size_in_unit(hidden, name))) {
                 fault << "; the interval of " << name << " has a half width of " << allowed;
             }
         }

@@ -63,7 +63,7 @@ bool stopped_by(const std::string& said, const std::vector<std::string>& causes)
 /// Checks that no command of the loop with this output changed by a tenth of its limit, 80 and 40 N·m.
 void check_steps(const std::string& said) {
     CHECK(number_after(said, "from tick to tick, by ") < 8);
-    CHECK(number_after(said, ", ", "tick, by ") < 4);
+    CHECK(number_after(said, ", ", " by ") < 4);
 }
 
 /// Returns true if the loop with this output was never so late that its tracking error is meaningless.
