@@ -111,7 +111,7 @@ TEST_CASE("recordings whose periods differ by more than an eighth have none in c
     recordings.back().source = "fast.csv";
     CHECK_THROWS_MATCHES(sample_period_s(recordings), InputError,
                          Catch::Matchers::Message("fast.csv: expected a row every 0.008 s, as in run.csv, "
-                                 "found one every 0.002 s"));
+                                                  "found one every 0.002 s"));
 }
 
 TEST_CASE("rows closer than a model's sample period are refused, rows farther apart are not") {
