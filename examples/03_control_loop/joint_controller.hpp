@@ -63,6 +63,9 @@ class JointController {
     static constexpr int joints = 6;                     ///< of the arm and of the model
     static constexpr std::int64_t period_ns = 1'000'000; ///< of `update`
     static constexpr int ticks_per_sample = 8;           ///< the model was trained on samples 8 ms apart
+    static_assert(8 * period_ns * ticks_per_sample > 7 * ur5_model::constants.period_ns &&
+                      8 * period_ns * ticks_per_sample < 9 * ur5_model::constants.period_ns,
+                  "the model was trained at another sample period");
     static constexpr int hold_ticks = 5;            ///< ticks that a correction is held without measurement
     static constexpr float observer_share = 0.3F;   ///< of the limit: the observer's largest effort
     static constexpr float observer_step = 0.04F;   ///< of the limit: its change in a tick by noise
@@ -102,7 +105,15 @@ class JointController {
                               .bandwidth = all(gains.bandwidth),
                               .observer_limit = all(observer_share * gains.limit)}),
           observer_({}, {1e-9F * period_ns, all(gains.bandwidth), all(observer_share * gains.limit),
-                         all(observer_step * gains.limit), all(vibration_swing * gains.limit)}) {}
+                         all(observer_step * gains.limit), all(vibration_swing * gains.limit)}),
+          valid_(forward_.settings_valid() && std::isfinite(gains.position) && gains.position >= 0 &&
+                 std::isfinite(gains.velocity) && gains.velocity >= 0 && std::isfinite(gains.inertia)) {}
+
+    JointController(const JointController&) = delete; // its parts refer to each other
+    JointController& operator=(const JointController&) = delete;
+
+    /// Returns whether the gains are usable. With others every effort is 0: do not release the brakes.
+    [[nodiscard]] bool valid() const { return valid_; }
 
     /// Starts the controller. The arm must be at rest at the beginning of the reference.
     void activate(const State& state) {
@@ -117,6 +128,9 @@ class JointController {
     /// Performs one tick and returns the efforts to apply until the next one, A, within ± `limit`. `state`:
     /// newest measurement. `nominal`: effort of your own model for the reference, A; zeros without a model.
     const Efforts& update(const State& state, const Reference& reference, const Efforts& nominal) {
+        if (!valid_) {
+            return effort_; // 0
+        }
         const Efforts before = effort_; // in effect until the present position was reached
         const Efforts& forward = forward_.update(reference, nominal.data());
         const bool exact = correct(state, reference);
@@ -200,6 +214,7 @@ class JointController {
     Learned learned_;
     Forward forward_;
     Observer observer_;
+    bool valid_;
     static constexpr int most_missed = 1'000'000; // the count saturates
 
     Efforts effort_{}, excess_{};

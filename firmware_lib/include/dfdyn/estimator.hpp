@@ -204,7 +204,7 @@ class Estimator {
             if (!std::isfinite(sample.position[i])) {
                 return Reason::position_not_finite;
             }
-            if (std::abs(sample.position[i]) > constants_->position_limit[i]) {
+            if (!(std::abs(sample.position[i]) <= constants_->position_limit[i])) { // also for a NaN limit
                 return Reason::position_out_of_range;
             }
         }

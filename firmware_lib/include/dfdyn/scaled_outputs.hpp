@@ -48,7 +48,7 @@ class ScaledOutputs {
             if (!std::isfinite(sample.output[k])) {
                 return Reason::output_not_finite;
             }
-            if (std::abs(sample.output[k]) > constants.output_limit[k]) {
+            if (!(std::abs(sample.output[k]) <= constants.output_limit[k])) { // also for a NaN limit
                 return Reason::output_out_of_range;
             }
         }

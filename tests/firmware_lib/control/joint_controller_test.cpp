@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace joint_controller_test {
@@ -53,6 +54,28 @@ class Rig {
     SimulatedJoints joints_;
     long tick_ = 0;
 };
+
+TEST_CASE("a controller with unusable gains commands nothing, and none is copied") {
+    STATIC_REQUIRE_FALSE(std::is_copy_constructible_v<JointController>);
+    STATIC_REQUIRE_FALSE(std::is_copy_assignable_v<JointController>);
+    REQUIRE(JointController(gains).valid());
+    for (float JointController::Gains::*gain :
+         {&JointController::Gains::position, &JointController::Gains::velocity,
+          &JointController::Gains::limit, &JointController::Gains::bandwidth}) {
+        for (const float wrong : {nothing, std::numeric_limits<float>::infinity(), -1.0F}) {
+            JointController::Gains unusable = gains;
+            unusable.*gain = wrong;
+            JointController controller(unusable);
+            CHECK_FALSE(controller.valid());
+            const SimulatedJoints arm;
+            controller.activate(arm.state());
+            const JointController::Reference reference = SimulatedJoints::reference(100);
+            const JointController::Efforts& effort =
+                controller.update(arm.state(), reference, SimulatedJoints::nominal(reference));
+            CHECK(std::ranges::all_of(effort, [](float one) { return one == 0; }));
+        }
+    }
+}
 
 TEST_CASE("a joint without position keeps its correction and returns to it without a step") {
     Rig rig;

@@ -54,6 +54,18 @@ TEST_CASE("a position that is NaN or beyond its limit is refused and leaves a ga
     }
 }
 
+TEST_CASE("a limit that is NaN refuses every value") {
+    DFDYN_SEEDED_ENGINE(engine);
+    auto constants = make_constants<SmallModel>(engine);
+    constants.output_limit[0] = not_a_number;
+    RunningArm<SmallModel> unlearned(engine, constants);
+    const auto estimate = unlearned.estimator.tick(unlearned.due(), Budget::unlimited());
+    CHECK(estimate.status.learning == Reason::output_out_of_range);
+    constants.position_limit[1] = not_a_number;
+    RunningArm<SmallModel> still(engine, constants);
+    CHECK(still.refused(still.due()) == Reason::position_out_of_range);
+}
+
 TEST_CASE("a refused position with the stamp of a valid one has no effect") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);

@@ -145,6 +145,30 @@ TEST_CASE("a sample predicted before another was learned is learned as if predic
     CHECK(relative_error(late.all_unknowns(), usual.all_unknowns()) < 1e-12);
 }
 
+TEST_CASE("a sample predicted during a reset of the covariance is learned as if predicted after it") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const ArrowProblem problem(engine, 40, 9, 4, 2);
+    Arrow<double> usual(problem);
+    Arrow<double> sliced(problem);
+    for (int t = 0; t < 30; ++t) {
+        usual.learn(problem, t);
+        sliced.learn(problem, t);
+    }
+    Budget whole = Budget::unlimited();
+    usual.learner().reset_covariance();
+    usual.learner().advance(whole);
+    usual.learn(problem, 30);
+    sliced.learner().reset_covariance();
+    const Cost cost = Arrow<double>::Learner::cost(9, 4, 2);
+    Budget part{cost.largest_step};
+    REQUIRE_FALSE(sliced.learner().advance(part));
+    sliced.predict(problem, 30);
+    sliced.learner().advance(whole);
+    sliced.begin(problem, 30);
+    sliced.learner().advance(whole);
+    CHECK(relative_error(sliced.all_unknowns(), usual.all_unknowns()) < 1e-12);
+}
+
 TEST_CASE("the block arrow uses exactly its declared cost") {
     DFDYN_SEEDED_ENGINE(engine);
     const ArrowProblem problem(engine, 20, 30, 7, 3);

@@ -315,6 +315,7 @@ class BlockArrow : public BlockArrowFootprint<Scalar, columns, p, m> {
             detail::add_scaled(-common_.parameters()[c - 1], coupling,
                                weights_.data() + k * (1 + parameters_) * padded(columns_), columns_);
             std::fill_n(coupling, int{columns_}, Scalar(0));
+            fresh_ = false; // a sample predicted meanwhile had the weights before
         }
         return true;
     }

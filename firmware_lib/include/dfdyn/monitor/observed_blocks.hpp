@@ -27,6 +27,7 @@ struct Observation {
 /// Geometry, time scales and the false-alarm rate of a monitor. The constants must outlive the monitor.
 template <class Scalar, class Arm, int M>
 struct MonitorConstants {
+    static_assert(M == dynamic || (M >= 2 && M % 2 == 0), "the window has a sample in its middle");
     static constexpr int n = Arm::joints;       ///< joints
     static constexpr int m = Arm::outputs;      ///< outputs
     using Motion = DerivativeFreeReduced<M, 3>; ///< position, velocity and acceleration from the window
