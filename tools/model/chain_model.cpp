@@ -6,6 +6,7 @@
 #include "tools/base/text/text.hpp"
 #include "tools/model/effects.hpp"
 #include "tools/robot/firmware_chain.hpp"
+#include "tools/robot/joint_unit.hpp"
 
 #include <algorithm>
 #include <set>
@@ -98,7 +99,8 @@ std::vector<std::string> column_names(const Robot& robot, const ChainModel& chai
         if (kind.needs_diagnosis()) {
             parameter += " " + kind.found_shape(effect);
         }
-        names.push_back(where + " " + parameter + " (" + kind.unit + ")");
+        const bool prismatic = !chain.sensor && chain.joints[static_cast<std::size_t>(effect.row)].prismatic;
+        names.push_back(where + " " + parameter + " (" + unit_at_joint(kind.unit, prismatic) + ")");
     }
     return names;
 }

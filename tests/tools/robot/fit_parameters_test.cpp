@@ -9,6 +9,8 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/robot/arms.hpp"
 
+#include <limits>
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -77,6 +79,15 @@ TEST_CASE("the standard deviations match the errors of the estimates") {
     CHECK(fit.noise.deviation.minCoeff() == Approx(0.5).epsilon(0.15));
     CHECK(fit.noise.correlation_length.maxCoeff() < 1.5);
     CHECK(fit.condition > 1);
+}
+
+TEST_CASE("fewer equations than parameters determine no more parameters than equations") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Experiment made = experiment(dfdyn::tests::ur5(), OutputKind::joint_torque, 5, 0.5, engine);
+    const tools::BaseFit fit = tools::fit_base_parameters(made.data, made.base);
+    REQUIRE(fit.deviation.size() > 30);
+    CHECK((fit.deviation.array() == std::numeric_limits<double>::infinity()).count() >=
+          fit.deviation.size() - 30);
 }
 
 TEST_CASE("correlated noise increases the standard deviations") {

@@ -34,6 +34,7 @@ constexpr int most_lags = 100;
 /// poles for comparison
 constexpr std::array filter_poles{0.0, 0.3, 0.5, 0.65, 0.75, 0.83, 0.9, 0.95};
 constexpr std::size_t rows_for_filters = 1500; ///< for the comparison of filters
+constexpr std::size_t rows_for_noise = 20'000; ///< bounds the memory of their windows
 
 /// Velocity and acceleration as weighted means of first and second differences, with one pole each.
 InputModel filters(double velocity_pole, double acceleration_pole, const TrainingData& data) {
@@ -99,18 +100,23 @@ VectorXd variance(const MatrixXd& outputs) {
     return mean_square(outputs.rowwise() - outputs.colwise().mean()).cwiseMax(1e-12);
 }
 
-InputModel best_filters(const Prediction& prediction, const TrainingData& data) {
-    const int lags = filters(0, 0, data).lags;
+/// Returns about `most` evenly distributed rows with full windows, or all.
+RowList some_rows(const TrainingData& data, int lags, std::size_t most) {
     const RowList usable = usable_rows(data.gap_before, lags);
     if (usable.empty()) {
         throw InputError("recording: expected stretches of more than " + std::to_string(lags) +
                          " rows without a gap, found none");
     }
     RowList rows;
-    const std::size_t step = std::max<std::size_t>(1, usable.size() / rows_for_filters);
+    const std::size_t step = std::max<std::size_t>(1, usable.size() / most);
     for (std::size_t i = 0; i < usable.size(); i += step) {
         rows.push_back(usable[i]);
     }
+    return rows;
+}
+
+InputModel best_filters(const Prediction& prediction, const TrainingData& data) {
+    const RowList rows = some_rows(data, filters(0, 0, data).lags, rows_for_filters);
     const VectorXd weight = variance(data.outputs).cwiseInverse();
     InputModel best;
     double least = std::numeric_limits<double>::infinity();
@@ -205,7 +211,7 @@ TrainedModel extended_model(const ModelExtension& extension, std::span<const Rec
     physics.motion = best_filters(prediction, data);
     physics.motion_limit = motion_limits(physics.motion, data);
     set_start(physics, starting_point(extension, prediction));
-    const RowList rows = usable_rows(data.gap_before, physics.motion.lags);
+    const RowList rows = some_rows(data, physics.motion.lags, rows_for_noise);
     const VectorXd noise = mean_square(prediction.error(physics.motion, rows)).cwiseSqrt();
     TrainedModel model;
     model.structure = structures::P.name;

@@ -55,7 +55,11 @@ Solution solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& error, con
     Eigen::VectorXd length = weighted.colwise().norm();
     length = (length.array() > 0).select(length, 1.0);
     weighted *= length.cwiseInverse().asDiagonal();
-    const auto [u, s, v] = singular_values(weighted);
+    if (weighted.rows() < weighted.cols()) { // the directions without an equation are part of `v` then, too
+        weighted.conservativeResizeLike(Eigen::MatrixXd::Zero(weighted.cols(), weighted.cols()));
+    }
+    const auto [padded, s, v] = singular_values(weighted);
+    const auto u = padded.topRows(columns.rows());
     const Eigen::VectorXd inverse = (s.array() > not_excited * s[0]).select(s.cwiseInverse(), 0.0);
     const Eigen::MatrixXd spread = v * inverse.asDiagonal();
     Solution solution;

@@ -37,6 +37,7 @@ TrainingData spaced_data(const TrainingData& data, int every) {
     const std::vector<int> run = samples_since_gap(data);
     TrainingData spaced;
     spaced.output_names = data.output_names;
+    spaced.steady = data.steady;
     spaced.sample_period_s = every * data.sample_period_s;
     spaced.positions.resize(data.positions.rows(), data.positions.cols());
     spaced.outputs.resize(data.outputs.rows(), data.outputs.cols());
@@ -51,6 +52,7 @@ TrainingData spaced_data(const TrainingData& data, int every) {
             }
             spaced.positions.row(row) = data.positions.middleRows(t - every + 1, every).colwise().mean();
             spaced.outputs.row(row) = data.outputs.row(t);
+            spaced.moment.push_back(t);
             spaced.gap_before.push_back(follows && since >= 2 * every ? 0 : 1);
             follows = true;
             ++row;

@@ -26,8 +26,8 @@ inline int dense_lags(const LagSpacing& spacing) { return (spacing.lags + 1) * s
 
 /// Returns `data` for training with the spacing: the means of the last `every` positions at each sample, as
 /// `every` interleaved sequences with `every` times the period, one after the other. The rows are therefore
-/// not in chronological order. The first `every` - 1 samples after a gap, velocities and accelerations are
-/// left out. Returns `data` itself for `every` = 1.
+/// not in chronological order; `moment` has their samples. The first `every` - 1 samples after a gap,
+/// velocities and accelerations are left out. Returns `data` itself for `every` = 1.
 TrainingData spaced_data(const TrainingData& data, int every);
 
 /// Converts the rows k x (M+1) for spaced positions to rows for single samples: k x N(M+1), each entry

@@ -19,10 +19,10 @@ void copy_row(std::span<const double> from, Eigen::MatrixXd& to, Eigen::Index ro
     to.row(row) = Eigen::Map<const Eigen::RowVectorXd>(from.data(), index(from.size()));
 }
 
-std::vector<double> sample_times_s(std::span<const Recording> recordings) {
-    std::vector<double> times;
+std::vector<std::int64_t> sample_times_ns(std::span<const Recording> recordings) {
+    std::vector<std::int64_t> times;
     for (const Recording& recording : recordings) {
-        times.insert(times.end(), recording.time_s.begin(), recording.time_s.end());
+        times.insert(times.end(), recording.time_ns.begin(), recording.time_ns.end());
     }
     return times;
 }
@@ -84,7 +84,7 @@ double estimate_position_noise_bound(const TrainingData& data) {
 
 void estimate_derivatives(TrainingData& data, std::span<const Recording> recordings, int lags,
                           double position_noise_bound) {
-    const std::vector<double> times_s = sample_times_s(recordings);
+    const std::vector<std::int64_t> times_ns = sample_times_ns(recordings);
     const Eigen::Index rows = data.positions.rows();
     data.velocities = Eigen::MatrixXd::Zero(rows, data.positions.cols());
     data.accelerations = data.velocities;
@@ -96,7 +96,8 @@ void estimate_derivatives(TrainingData& data, std::span<const Recording> recordi
         for (Eigen::Index joint = 0; joint < data.positions.cols(); ++joint) {
             for (int lag = 0; lag < filled; ++lag) {
                 ages_s[static_cast<std::size_t>(lag)] =
-                    times_s[static_cast<std::size_t>(t - lag)] - times_s[static_cast<std::size_t>(t)];
+                    1e-9 * static_cast<double>(times_ns[static_cast<std::size_t>(t - lag)] -
+                                               times_ns[static_cast<std::size_t>(t)]);
                 values[static_cast<std::size_t>(lag)] = data.positions(t - lag, joint);
             }
             const AdaptiveWindow<double> window(ages_s.data(), values.data(), 1, filled,

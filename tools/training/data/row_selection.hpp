@@ -8,7 +8,7 @@
 
 namespace dfdyn::tools {
 
-using RowList = std::vector<Eigen::Index>; ///< ascending row numbers
+using RowList = std::vector<Eigen::Index>; ///< row numbers
 
 /// Returns the rows whose lag window of `lags` + 1 rows has no gap. O(T).
 RowList usable_rows(const std::vector<std::uint8_t>& gap_before, int lags);

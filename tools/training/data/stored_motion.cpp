@@ -18,10 +18,18 @@ MotionSamples stored_motion(const InputModel& motion, const TrainingData& data, 
 
 std::vector<double> motion_limits(const InputModel& motion, const TrainingData& data) {
     constexpr double margin = 10;
-    constexpr double least = 1e-3; // for a joint that did not move
-    const MatrixXd xi = stored_inputs(motion, data, usable_rows(data.gap_before, motion.lags));
-    const Eigen::VectorXd limits = (margin * xi.cwiseAbs().colwise().maxCoeff().transpose()).cwiseMax(least);
-    return to_vector(limits);
+    constexpr double least = 1e-3;          // for a joint that did not move
+    constexpr std::size_t block_rows = 512; // bounds the memory of the windows
+    const RowList rows = usable_rows(data.gap_before, motion.lags);
+    Eigen::VectorXd largest;
+    for (std::size_t first = 0; first < rows.size(); first += block_rows) {
+        const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(first);
+        const auto count = static_cast<std::ptrdiff_t>(std::min(block_rows, rows.size() - first));
+        const MatrixXd xi = stored_inputs(motion, data, {begin, begin + count});
+        const Eigen::VectorXd here = xi.cwiseAbs().colwise().maxCoeff().transpose();
+        largest = first == 0 ? here : Eigen::VectorXd(largest.cwiseMax(here));
+    }
+    return to_vector(Eigen::VectorXd((margin * largest).cwiseMax(least)));
 }
 
 } // namespace dfdyn::tools

@@ -42,18 +42,21 @@ double reach_of(const Robot& robot, std::size_t first) {
     return std::max(reach, to_joint + robot.tip_placement.translation().norm());
 }
 
-/// Mass of joint `first` and everything beyond it.
+/// Mass of joint `first` and everything beyond it. Where the file has none, it is not more than that of the
+/// whole robot.
 double mass_of(const Robot& robot, std::size_t first, double reach) {
-    double mass = 0;
-    double effort = 0;
-    for (std::size_t i = first; i < robot.joints.size(); ++i) {
-        mass += std::max(robot.joints[i].inertia[0], 0.0);
-        effort = std::max(effort, robot.joints[i].effort.value_or(0));
+    double mass = 0, whole = 0, effort = 0;
+    for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+        const double own = std::max(robot.joints[i].inertia[0], 0.0);
+        whole += own;
+        mass += i >= first ? own : 0;
+        effort = i >= first ? std::max(effort, robot.joints[i].effort.value_or(0)) : effort;
     }
     if (mass > 0) {
         return mass;
     }
-    return effort > 0 ? effort / (gravity * reach) : unknown_mass;
+    const double possible = effort > 0 ? effort / (gravity * reach) : unknown_mass;
+    return whole > 0 ? std::min(possible, whole) : possible;
 }
 
 /// Mass and reach of a robot from one of its joints on, and quantities derived from them.

@@ -27,7 +27,8 @@ std::string gaps_text(const TrainingData& data) {
     std::size_t run = 0;
     std::size_t longest = 0;
     for (std::size_t row = 0; row < data.gap_before.size(); ++row) {
-        const bool gap = row > 0 && data.gap_before[row] != 0;
+        const bool interleaved = !data.moment.empty() && row > 0 && data.moment[row] < data.moment[row - 1];
+        const bool gap = row > 0 && data.gap_before[row] != 0 && !interleaved;
         gaps += gap ? 1 : 0;
         run = gap ? 1 : run + 1;
         longest = std::max(longest, run);
@@ -57,6 +58,10 @@ TrainingRows choose_rows(const TrainingData& data, const TrainingOptions& option
     }
     rows.moving = split.moving;
     rows.likelihood = likelihood_rows(split, options.likelihood_rows);
+    if (!data.moment.empty()) { // forgetting and blocks of time need the order
+        std::ranges::sort(rows.usable, {},
+                          [&](Index row) { return data.moment[static_cast<std::size_t>(row)]; });
+    }
     return rows;
 }
 

@@ -14,7 +14,7 @@ namespace dfdyn::tools {
 
 /// The rows for each step of the training.
 struct TrainingRows {
-    RowList usable;     ///< for the start state
+    RowList usable;     ///< for the start state, in order of time
     RowList moving;     ///< for scales and offsets
     RowList likelihood; ///< for the exact kernel
 };

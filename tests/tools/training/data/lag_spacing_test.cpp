@@ -5,6 +5,7 @@
 #include "tests/tools/training/arm_data.hpp"
 #include "tools/training/data/input_map.hpp"
 #include "tools/training/data/row_selection.hpp"
+#include "tools/training/search/training_problem.hpp"
 #include "tools/training/train.hpp"
 
 #include <algorithm>
@@ -78,6 +79,32 @@ TEST_CASE("a spacing of one changes nothing") {
     const tools::TrainingData spaced = tools::spaced_data(data, 1);
     CHECK(spaced.positions == data.positions);
     CHECK(spaced.gap_before == data.gap_before);
+}
+
+TEST_CASE("the start of learning gets the rows of interleaved samples in order of time") {
+    const tools::TrainingData data = noisy_data(400); // with a gap
+    const tools::TrainingData spaced = tools::spaced_data(data, 4);
+    tools::TrainingOptions options;
+    options.lags = 3;
+    options.likelihood_rows = 60;
+    const tools::RowList rows = tools::choose_rows(spaced, options).usable;
+    REQUIRE(rows.size() > 300);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto row = static_cast<std::size_t>(rows[i]);
+        CHECK(spaced.outputs.row(rows[i]) == data.outputs.row(spaced.moment[row]));
+        CHECK((i == 0 || spaced.moment[row] > spaced.moment[static_cast<std::size_t>(rows[i - 1])]));
+    }
+}
+
+TEST_CASE("an arm that does not move has no gaps because its samples are interleaved") {
+    tools::TrainingData data = noisy_data(400);
+    data.positions.setZero();
+    data.gap_before.assign(data.gap_before.size(), 0);
+    data.gap_before.front() = 1;
+    tools::TrainingOptions options;
+    options.lags = 3;
+    CHECK_THROWS_WITH(tools::choose_rows(tools::spaced_data(data, 4), options),
+                      Catch::Matchers::EndsWith("rows before them without a gap, found 0"));
 }
 
 TEST_CASE("inputs DF, DFW and DFSR become free rows when spaced") {

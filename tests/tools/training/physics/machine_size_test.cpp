@@ -73,6 +73,13 @@ TEST_CASE("without masses the sizes follow from efforts and without efforts from
     CHECK(sizes_of(robot)[0] == Approx(1)); // kg, at a distance of 1 m
 }
 
+TEST_CASE("a link without mass cannot be heavier than the whole robot") {
+    Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg
+    robot.joints[1].inertia.setZero();
+    const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
+    CHECK(parameter_deviations(robot, chain, {})[10] == Approx(1));
+}
+
 TEST_CASE("the nominal parameters of real robots are within their sizes") {
     for (const Robot& robot : {dfdyn::tests::ur5(), dfdyn::tests::icub_right_arm()}) {
         CAPTURE(robot.name);

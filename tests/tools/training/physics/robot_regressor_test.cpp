@@ -99,7 +99,10 @@ TEST_CASE("columns times the robot's parameters are the gravity torques at rest 
 
 TEST_CASE("columns are named with their units in their order") {
     std::mt19937_64 engine(1);
-    const Robot robot = random_robot(engine, 2);
+    Robot robot = random_robot(engine, 2);
+    for (RobotJoint& joint : robot.joints) {
+        joint.prismatic = false;
+    }
     const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
     const auto effects = effect_models({"torque_offset", "viscous_friction"}, chain, 0.1);
     const std::vector<std::string> names = column_names(robot, chain, effects);
@@ -107,6 +110,9 @@ TEST_CASE("columns are named with their units in their order") {
     CHECK(names[1] == "link1 mcx (kg·m)");
     CHECK(names[20] == "joint1 viscous (N·m·s/rad)");
     CHECK(names[23] == "joint2 offset (N·m)");
+    ChainModel slide = chain;
+    slide.joints[1].prismatic = true;
+    CHECK(column_names(robot, slide, effects)[23] == "joint2 offset (N)");
 }
 
 TEST_CASE("unknown effects and effects that the outputs cannot show are rejected") {
