@@ -262,6 +262,26 @@ int run_on_bus(const LoopOptions& options) {
     return stopped ? 1 : 0;
 }
 
+void check_usage(const LoopOptions& options) {
+    const bool model = !options.model.empty();
+    refuse(!model && !options.on_finding.empty(), "loop: --on-finding: expected --model, found none");
+    refuse(!model && !options.on_contact.empty(), "loop: --on-contact: expected --model, found none");
+    refuse(!model && (options.from_prior || !options.limits.learned_limit.empty()),
+           "loop: --from-prior and --learned-limit: expected --model, found none");
+    refuse(options.simulate && options.limits.mode == StopMode::limp,
+           "loop: --stop limp: expected --can, found --simulate, which ends at the stop");
+    refuse(options.on_contact.empty() && options.limits.contact_rate_per_hour,
+           "loop: --contact-rate: expected --on-contact, found none");
+    refuse(!model && !(options.restored.empty() && options.saved.empty()),
+           "loop: --restore and --save: expected --model, found none");
+    refuse(options.simulate && !options.interface.empty(),
+           "loop: expected one of --simulate and --can, found both");
+    refuse(!options.simulate && options.interface.empty(),
+           "loop: expected one of --simulate and --can, found none");
+    refuse(options.simulate && !(options.duration_s > 0), "loop --simulate: expected --duration, found none");
+    refuse(!options.simulate && options.bus.empty(), "loop --can: expected --bus, found none");
+}
+
 } // namespace
 
 int run_loop_command(LoopOptions& options) {
@@ -269,38 +289,8 @@ int run_loop_command(LoopOptions& options) {
     if (!options.on_contact.empty()) {
         options.limits.on_contact = contact_action(options.on_contact, "--on-contact");
     }
-    for (const auto& [name, given] : {std::pair("--on-finding", !options.on_finding.empty()),
-                                      std::pair("--on-contact", !options.on_contact.empty())}) {
-        if (options.model.empty() && given) {
-            throw InputError(std::string("loop: ") + name + ": expected --model, found none");
-        }
-    }
-    if (options.model.empty() && (options.from_prior || !options.limits.learned_limit.empty())) {
-        throw InputError("loop: --from-prior and --learned-limit: expected --model, found none");
-    }
-    if (options.simulate && options.limits.mode == StopMode::limp) {
-        throw InputError("loop: --stop limp: expected --can, found --simulate, which ends at the stop");
-    }
-    if (options.on_contact.empty() && options.limits.contact_rate_per_hour) {
-        throw InputError("loop: --contact-rate: expected --on-contact, found none");
-    }
-    if (options.model.empty() && !(options.restored.empty() && options.saved.empty())) {
-        throw InputError("loop: --restore and --save: expected --model, found none");
-    }
-    if (options.simulate == !options.interface.empty()) {
-        throw InputError("loop: expected one of --simulate and --can, found " +
-                         std::string(options.simulate ? "both" : "none"));
-    }
-    if (options.simulate) {
-        if (!(options.duration_s > 0)) {
-            throw InputError("loop --simulate: expected --duration, found none");
-        }
-        return simulate(options);
-    }
-    if (options.bus.empty()) {
-        throw InputError("loop --can: expected --bus, found none");
-    }
-    return run_on_bus(options);
+    check_usage(options);
+    return options.simulate ? simulate(options) : run_on_bus(options);
 }
 
 } // namespace dfdyn::tools

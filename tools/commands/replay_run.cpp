@@ -34,12 +34,6 @@ namespace {
 /// Number of ticks kept with --can for the summary and the report: a bound for replays of unlimited duration.
 constexpr std::size_t kept_live_ticks = 32'768;
 
-void refuse(bool wrong, const char* message) {
-    if (wrong) {
-        throw InputError(message);
-    }
-}
-
 void check_usage(const ReplayOptions& options) {
     const bool bus = !options.bus.empty();
     if (options.recordings.logs.empty() != options.live()) {

@@ -47,8 +47,8 @@ bool moves(const Recording& recording) {
     return false;
 }
 
-/// Returns whether an output has steps of more than 1 % of its range. Its equal values are then no sign of a
-/// saturated or dead channel.
+/// Returns whether an output has steps of more than 1 % of its range. Many equal values at the end of its
+/// range, or in a row, are then no sign of a saturated or dead channel.
 bool coarse(const Recording& recording, std::size_t output) {
     constexpr double coarsest = 0.01; // of the range
     const auto column = columns_matrix(recording.output).col(static_cast<Eigen::Index>(output));

@@ -74,23 +74,29 @@ double common_period_s(std::span<const Recording> recordings) {
                      where + ", found one every " + rounded_text(found_s) + " s");
 }
 
-} // namespace
-
-double sample_period_s(std::span<const Recording> recordings) {
+/// Refuses recordings with another period than the first one; those of one row have none.
+void check_same_period(std::span<const Recording> recordings) {
     const Recording* first = nullptr;
     double first_s = 0;
     for (const Recording& recording : recordings) {
-        if (recordings.size() < 2 || recording.row_count() < 2) {
+        if (recording.row_count() < 2) {
             continue;
         }
         const double own_s = common_period_s({&recording, 1});
         if (first == nullptr) {
             first = &recording;
             first_s = own_s;
-        }
-        if (std::abs(own_s / first_s - 1) > followed_deviation) {
+        } else if (std::abs(own_s / first_s - 1) > followed_deviation) {
             refuse_period(recording, own_s, first_s, first->source);
         }
+    }
+}
+
+} // namespace
+
+double sample_period_s(std::span<const Recording> recordings) {
+    if (recordings.size() > 1) {
+        check_same_period(recordings);
     }
     return common_period_s(recordings);
 }

@@ -5,6 +5,10 @@
 #include "tools/can/motors/motor_board.hpp"
 #include "tools/can/motors/motor_fields.hpp"
 
+#include <algorithm>
+#include <map>
+#include <ranges>
+
 namespace dfdyn::tools::families {
 
 namespace {
@@ -159,7 +163,6 @@ Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
     Recognition recognition;
     recognition.quantity = "i";
     const bool old = driver == hal::RmdDriver::v2;
-    hal::RmdPosition position = hal::RmdPosition::multi_turn; // of all motors of the draft
     std::map<int, hal::RmdPosition> finest_of;
     std::set<unsigned> answering;
     for (const auto& [motor, commands] : rmd_answers(frames, driver)) {
@@ -169,7 +172,6 @@ Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
         if (!fit.fits()) {
             continue;
         }
-        position = answering.empty() ? finest : std::min(position, finest);
         finest_of[motor] = finest;
         add_rmd_motor(motor, fit.joint[0], recognition);
         answering.insert(static_cast<unsigned>(motor));
@@ -182,6 +184,8 @@ Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
             return hal::RmdMotor({.motor_id = static_cast<int>(motor), .driver = driver});
         });
     }
+    const hal::RmdPosition position = // of all motors of the draft
+        finest_of.empty() ? hal::RmdPosition::multi_turn : std::ranges::min(finest_of | std::views::values);
     recognition.fields = {{"driver", old ? "V2" : "V3"},
                           {"position", rmd_position_names.at(static_cast<std::size_t>(position))}};
     if (!recognition.boards.empty()) {

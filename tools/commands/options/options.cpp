@@ -97,6 +97,12 @@ RecordingOptions::with(const std::vector<std::filesystem::path>& others) const {
     return files;
 }
 
+void refuse(bool wrong, const char* message) {
+    if (wrong) {
+        throw InputError(message);
+    }
+}
+
 void check_distinct(const std::vector<std::filesystem::path>& outputs,
                     std::vector<std::filesystem::path> inputs) {
     for (const std::filesystem::path& output : outputs) {

@@ -39,6 +39,9 @@ struct RecordingOptions {
     std::vector<Recording> read_each_once(const ReadOptions& options) const;
 };
 
+/// Throws InputError with this message for options that are `wrong` together.
+void refuse(bool wrong, const char* message);
+
 /// Throws InputError if two outputs, or an output and an input, are the same file. Empty paths are ignored.
 void check_distinct(const std::vector<std::filesystem::path>& outputs,
                     std::vector<std::filesystem::path> inputs);

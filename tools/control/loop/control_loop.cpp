@@ -38,10 +38,10 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
       clock_(std::llround(config_.period_s * 1e9)), watch_(config_.safe_stop, config_.period_s),
       safe_stop_(config_.safe_stop), task_(std::move(task), config_.period_s),
       observer_(make_observer(config_)), zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_),
-      command_(zero_), excess_(zero_),
-      feedback_torque_(zero_), early_{0, zero_, std::vector<bool>(static_cast<std::size_t>(zero_.size())),
-                                      false},
-      missing_(early_.missing.size()), blind_(missing_.size()) {
+      command_(zero_), excess_(zero_), feedback_torque_(zero_),
+      missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()) {
+    early_.position = zero_;
+    early_.missing = missing_;
     references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
     references_.front() = task_.next();
     commands_.resize(references_.size());
@@ -145,7 +145,6 @@ void ControlLoop::follow() {
     meet_contact();
 }
 
-/// Passes the newest sample to the learner, at its own time.
 void ControlLoop::learn() {
     const int ago = learnable_ago_.value_or(0);
     const double ticks = static_cast<double>(tick_) - ago;

@@ -174,6 +174,7 @@ class ControlLoop {
     /// Limits the change of the feedback and observer torque `wanted`.
     JointVector gradually(const JointVector& wanted);
     JointVector disturbance();
+    /// Passes this tick's sample to the learner, at its own time.
     void learn();
     /// Returns the command in effect at the time of the measurement of `ago` ticks before this tick's. Null
     /// before the first one, and if the command was limited or resulted from missing positions.
@@ -210,8 +211,8 @@ class ControlLoop {
     int recovery_ = 0;            ///< remaining regular ticks with limited feedback
     EarlySample early_;
     std::vector<bool> missing_; ///< joints without a reading at this tick
-    std::optional<int>
-        learnable_ago_;       ///< ticks since the sample of this tick, if all its readings are regular
+    /// ticks since the measurement of this tick's sample, if all its readings are regular
+    std::optional<int> learnable_ago_;
     Reference braking_;       ///< reference of joints that brake or hold; empty before
     std::vector<bool> blind_; ///< joints that brake without readings
     std::optional<std::uint64_t> stopped_tick_, brake_tick_;

@@ -8,12 +8,6 @@
 
 namespace dfdyn::tools {
 
-namespace {
-
-constexpr int most_counted = 1'000'000'000; // readings, so that a count does not overflow
-
-} // namespace
-
 JointWatch::JointWatch(SafeStopConfig config, double period_s)
     : config_(std::move(config)), period_s_(period_s) {
     const Eigen::Index joints = config_.following_error.size();
@@ -56,13 +50,13 @@ void JointWatch::repeat(Eigen::Index joint, double reference, const PositionFeed
     if (same_[j] == 0) {
         speed_[joint] = steady_speed(joint, feedback.velocity()[joint]);
     }
-    same_[j] += same_[j] < most_counted ? 1 : 0;
+    same_[j] = counted(same_[j], most_same);
     lowest_[joint] = std::min(lowest_[joint], reference);
     highest_[joint] = std::max(highest_[joint], reference);
     const double given = feedback.given_noise_bound(), noise = given > 0 ? given : count;
     repeated_[j] = repeated_[j] || must_have_moved(joint, 2 * count + 4 * noise);
     const bool left = highest_[joint] - lowest_[joint] > std::max(config_.sticking[joint], 8 * count);
-    stuck_[j] = repeated_[j] || left ? std::min(stuck_[j], config_.frozen_patience) + 1 : 0;
+    stuck_[j] = repeated_[j] || left ? counted(stuck_[j], config_.frozen_patience) : 0;
     if (stuck_[j] > config_.frozen_patience) {
         found(StopCause::frozen_encoder, joint);
     }
@@ -94,13 +88,13 @@ void JointWatch::move(const PositionFeedback& feedback, const JointVector& comma
         const double position = feedback.position()[joint];
         if (feedback.observed(joint) && config_.speed_limit.size() > 0) {
             const bool fast = std::abs(feedback.velocity()[joint]) > config_.speed_limit[joint];
-            fast_[j] = fast ? std::min(fast_[j], config_.speed_patience) + 1 : 0;
+            fast_[j] = fast ? counted(fast_[j], config_.speed_patience) : 0;
         }
         const bool presses = config_.torque_limit.size() > 0 &&
                              std::abs(command[joint]) >= 0.999 * config_.torque_limit[joint];
         const bool moved =
             std::abs(position - pressing_position_[joint]) > config_.following_error[joint] / 10;
-        pressing_[j] = presses && !moved ? std::min(pressing_[j], config_.pressing_ticks) + 1 : 0;
+        pressing_[j] = presses && !moved ? counted(pressing_[j], config_.pressing_ticks) : 0;
         if (pressing_[j] == 0) {
             pressing_position_[joint] = position;
         }

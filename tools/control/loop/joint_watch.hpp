@@ -50,6 +50,8 @@ class JointWatch {
     Eigen::Index joint() const noexcept { return joint_; }
 
   private:
+    static constexpr int most_same = 1'000'000'000; ///< readings
+
     void found(StopCause cause, Eigen::Index joint) noexcept;
     void repeat(Eigen::Index joint, double reference, const PositionFeedback& feedback) noexcept;
     double steady_speed(Eigen::Index joint, double velocity) const noexcept;

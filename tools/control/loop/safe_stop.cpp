@@ -50,17 +50,17 @@ const char* name(StopCause cause) noexcept {
 SafeStop::SafeStop(SafeStopConfig config) : config_(std::move(config)) {}
 
 void SafeStop::count(const TickHealth& health) {
-    const auto add = [](int& ticks, int patience) { ticks = std::min(ticks, patience) + 1; };
-    if (!health.position_valid) {
-        add(health.returning ? returning_ : lost_,
-            health.returning ? config_.return_patience : config_.position_patience);
+    if (health.returning) {
+        returning_ = counted(returning_, config_.return_patience);
+    } else {
+        lost_ = counted(lost_, config_.position_patience);
     }
     lost_ = std::min(lost_, health.longest_silence);
     returning_ = std::min(returning_, health.longest_silence);
     if (health.position_valid) {
         lost_ = returning_ = 0;
     }
-    missed_ = health.deadline_missed ? std::min(missed_, config_.deadline_patience) + 1 : 0;
+    missed_ = health.deadline_missed ? counted(missed_, config_.deadline_patience) : 0;
 }
 
 StopCause SafeStop::judge(const TickHealth& health, const JointVector& error) {

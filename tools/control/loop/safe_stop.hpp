@@ -3,6 +3,7 @@
 
 #include "tools/robot/dynamics/joint_vector.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -39,6 +40,10 @@ enum class StopMode : std::uint8_t {
     hold, ///< torque, until the program ends
     limp, ///< torque until the brakes had time to close, then none
 };
+
+/// Returns the next count of successive readings or ticks. It ends just beyond `patience`, so that no count
+/// overflows.
+constexpr int counted(int count, int patience) noexcept { return std::min(count, patience) + 1; }
 
 /// Limits and patience; see StopCause. An empty vector means no limit. Ticks are those of the loop.
 struct SafeStopConfig {

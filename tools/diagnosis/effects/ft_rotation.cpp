@@ -30,19 +30,19 @@ Eigen::MatrixXd turned(const Eigen::MatrixXd& wrench, const Eigen::Quaterniond& 
     return result;
 }
 
-/// Linearized about the angles of the model. With these angles as coefficients, the sum of the columns is
-/// exact.
+/// Linearized about the angles of the model. At these angles the columns add up to the exact rotation.
 std::vector<Candidate> rotation_candidates(const DiagnosisSignals&, const FittedModel& model, std::size_t) {
     const Eigen::MatrixXd& wrench = model.output;
-    const Eigen::Vector3d along = model.sensor_angles.unaryExpr(&at_least_small);
+    const Eigen::Vector3d angles = model.sensor_angles.unaryExpr(&at_least_small);
     Candidate result;
     result.where = "ft_sensor";
-    const std::array<Eigen::MatrixXd, 4> steps{turned(wrench, sensor_rotation(along[0], along[1], along[2])),
-                                               turned(wrench, sensor_rotation(0, along[1], along[2])),
-                                               turned(wrench, sensor_rotation(0, 0, along[2])), wrench};
+    const std::array<Eigen::MatrixXd, 4> steps{
+        turned(wrench, sensor_rotation(angles[0], angles[1], angles[2])),
+        turned(wrench, sensor_rotation(0, angles[1], angles[2])),
+        turned(wrench, sensor_rotation(0, 0, angles[2])), wrench};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         result.columns.push_back(
-            on_outputs((steps[axis] - steps[axis + 1]) / along[static_cast<Eigen::Index>(axis)]));
+            on_outputs((steps[axis] - steps[axis + 1]) / angles[static_cast<Eigen::Index>(axis)]));
         result.shapes.push_back({{axis}, up_to(0.6), 0});
     }
     result.shapes.push_back(whole_shape(result, up_to(0.6)));

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -106,16 +105,13 @@ ReportTable unexplained_table(const Diagnosis& diagnosis) {
 
 } // namespace
 
-ChartCurve error_spectrum(const MeasuredMotion& measured, std::string name, const Eigen::VectorXd& error,
+ChartCurve error_spectrum(const SpectralRows& rows, std::string name, const Eigen::VectorXd& error,
                           Eigen::Index output) {
     constexpr double least_power = 1e-300; // on a logarithmic axis
-    const SpectralRows rows(measured);
-    const double highest_hz = measured.answered_hz.size() > 0 ? measured.answered_hz[output]
-                                                              : std::numeric_limits<double>::infinity();
     const double frames = std::max(rows.filled(output).sum(), 1e-9);
     const Eigen::VectorXd power = rows.analyse(error, output).rowwise().squaredNorm() / frames;
     ChartCurve curve{std::move(name), {}, {}, {}, {}};
-    for (Eigen::Index bin = 0; bin < power.size() && rows.frequency_hz(bin) <= highest_hz; ++bin) {
+    for (Eigen::Index bin = 0; bin < rows.answered_bins(output); ++bin) {
         curve.x.push_back(rows.frequency_hz(bin));
         curve.y.push_back(std::sqrt(std::max(power[bin], least_power)));
     }
@@ -194,17 +190,17 @@ PageSection rest_section(const DiagnosisWork& work) {
     if (!work.diagnosis.unexplained.empty()) {
         section.tables.push_back(unexplained_table(work.diagnosis));
     }
-    const MeasuredMotion& measured = work.signals->measured;
+    const SpectralRows rows(work.signals->measured);
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
         const std::string& unit = work.diagnosis.output_units[static_cast<std::size_t>(output)];
-        const ChartCurve left = error_spectrum(measured, "extended", rest.col(output), output);
+        const ChartCurve left = error_spectrum(rows, "extended", rest.col(output), output);
         section.charts.push_back(
             {"spectrum_" + name, name,
-             curve_chart(std::string("spectrum of the error of ").append(name), "frequency (Hz)",
-                         std::string("per bin (").append(unit).append(")"),
-                         {white_level(left),
-                          error_spectrum(measured, "simulated", nominal.col(output), output), left})});
+             curve_chart(
+                 std::string("spectrum of the error of ").append(name), "frequency (Hz)",
+                 std::string("per bin (").append(unit).append(")"),
+                 {white_level(left), error_spectrum(rows, "simulated", nominal.col(output), output), left})});
     }
     return section;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/diagnosis/diagnosis.hpp"
+#include "tools/diagnosis/signals/spectral_rows.hpp"
 #include "tools/report/chart.hpp"
 #include "tools/report/figure_page.hpp"
 
@@ -31,7 +32,7 @@ PageSection comparison_section(const DiagnosisWork& work, const std::string& ful
 
 /// Returns the root mean square per bin of an output's error (T), up to the highest frequency of its motion
 /// that the output answers to.
-ChartCurve error_spectrum(const MeasuredMotion& measured, std::string name, const Eigen::VectorXd& error,
+ChartCurve error_spectrum(const SpectralRows& rows, std::string name, const Eigen::VectorXd& error,
                           Eigen::Index output);
 
 /// Spectra of the errors, whiteness of the residual, and its remaining dependences.

@@ -27,6 +27,9 @@ class SpectralRows {
     double frequency_hz(Eigen::Index bin) const noexcept {
         return (static_cast<double>(bin) + 0.5) / (2 * hop_s);
     }
+    /// Number of bins up to the highest frequency that `output` answers to; `analyse` sets the others to
+    /// zero.
+    Eigen::Index answered_bins(Eigen::Index output) const { return bins() - unanswered_bins_[output]; }
     /// Returns the number of frames that do not overlap the rows after this share of the rows; at least one.
     Eigen::Index frames_within(double share) const;
 

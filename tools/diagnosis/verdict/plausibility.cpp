@@ -97,8 +97,8 @@ Eigen::MatrixXd own_columns(const DiagnosisSignals& signals, Eigen::Index output
 }
 
 /// Share of the outputs' variance between blocks that neither white noise nor a fit of the rigid body, a
-/// friction and a spring explains. Outputs of joints at rest and constant outputs show no model and are
-/// skipped.
+/// friction and a spring explains. Outputs of joints at rest and constant outputs carry no information
+/// about the robot and are skipped.
 double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
     constexpr double rounding = 1e-18; // of the squared size
     const Eigen::Index size = block_rows(signals);

@@ -10,7 +10,7 @@ namespace dfdyn::tools {
 // Reasons why a recording with a correct set-up is unsuitable: too little motion, another robot, too short.
 // Mistakes in the set-up: tools/setup_check. The most serious reason is the first.
 
-/// Returns whether the rows are 20 µs to 0.2 s apart (median); false for less than two rows.
+/// Returns whether the rows are 20 µs to 0.2 s apart (median); false for fewer than two rows.
 bool usable_rate(const Recording& recording);
 
 /// Checks the file, before the motion is computed.

@@ -24,11 +24,11 @@ TEST_CASE("the spectrum of an error has its power per bin and ends where the out
         level = 0.99 * level + normal(engine);
         value = level;
     }
-    const ChartCurve curve = error_spectrum(measured, "simulated", error, 0);
+    const SpectralRows rows(measured);
+    const ChartCurve curve = error_spectrum(rows, "simulated", error, 0);
     REQUIRE_FALSE(curve.x.empty());
     CHECK(curve.x.back() <= 5);
     CHECK(curve.x.back() > 4.5);
-    const SpectralRows rows(measured);
     double power = 0;
     for (const double amplitude : curve.y) {
         power += amplitude * amplitude;

@@ -24,9 +24,9 @@ class PositionTrack {
     /// Takes a device's value of this joint's position. Returns ok, or the reason of the rejection.
     constexpr Reason push(const JointValue& value) noexcept {
         if (!track_.is_later(value.stamp_ns)) {
-            EncoderReading again = reading_of(value);
-            unwrap_near(again, motion_.position_rad().value_or(again.position_rad)); // as the stored one
-            track_.push(value.stamp_ns, value.position_reason, {again.position_rad}, false);
+            EncoderReading repeated = reading_of(value); // in the turn of the stored value
+            unwrap_near(repeated, motion_.position_rad().value_or(repeated.position_rad));
+            track_.push(value.stamp_ns, value.position_reason, {repeated.position_rad}, false);
             return Reason::time_not_increasing;
         }
         const MotionGate::Verdict verdict = judge(value, arrival_.take(value.stamp_ns));

@@ -28,8 +28,8 @@ class VelocityWitness {
     /// ends when they agree over 0.05 rad, or when the device sends no velocity any more.
     constexpr bool contradicts(const JointValue& value) noexcept {
         velocity_ns_ = value.has_velocity ? value.stamp_ns : velocity_ns_;
-        if (seconds_between(velocity_ns_, value.stamp_ns) >
-            longest_window_s) { // the device stopped sending it
+        const bool ended = seconds_between(velocity_ns_, value.stamp_ns) > longest_window_s;
+        if (ended) { // the device sends no velocity any more
             agreed_rad_ = 0;
             contradicted_ = false;
         }
