@@ -26,9 +26,19 @@ dfdyn::ContactDetector<float, joints> detector({}, ur5_model::contact_limits);
 std::uint32_t largest = 0;
 std::uint32_t sum = 0;
 
-/// Returns true during a contact. The learner rests while one is suspected: a push is no property of the arm.
+/// Returns whether a sample describes the arm: a push does not, nor do joints that are all at rest, because
+/// their friction then bears a part of the weight.
+bool informs() {
+    bool moves = !detector.running(); // unknown
+    for (int k = 0; k < joints; ++k) {
+        moves = moves || detector.motion(k) != dfdyn::JointMotion::standing;
+    }
+    return moves && !detector.suspected();
+}
+
+/// Returns true during a contact.
 bool contact(const Estimator::Sample& sample) {
-    const dfdyn::Budget budget{detector.suspected() ? 0 : Estimator::cost().learn};
+    const dfdyn::Budget budget{informs() ? Estimator::cost().learn : 0};
     const auto estimate = estimator.tick(sample, budget);
     const std::uint32_t begin = instruction_counter();
     if (estimate.status.estimated() && sample.output_valid) {
@@ -39,7 +49,7 @@ bool contact(const Estimator::Sample& sample) {
         }
         detector.tick(sample.time_ns, sample.position.data(), error.data(), estimate.prediction.data());
     } else {
-        detector.interrupt();
+        detector.skip(sample.time_ns);
     }
     const std::uint32_t spent = instruction_counter() - begin;
     largest = std::max(largest, spent);

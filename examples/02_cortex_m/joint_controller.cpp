@@ -43,6 +43,10 @@ extern "C" void systick_handler() {
 }
 
 int application() {
+    if (!loop.controller().valid()) { // every effort would be 0
+        semihosting::write(DFDYN_CORE ": the controller's gains are out of range\n");
+        return 1;
+    }
     start_systick(core_clock_hz / timer_hz - 1, SysTick::interrupts);
     while (!ended) {
         asm volatile("wfi" ::: "memory");

@@ -8,6 +8,7 @@
 #include "dfdyn/control/loop_margin.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -49,18 +50,47 @@ class StampClock {
     int in_a_row_ = 0;             // consecutive stamps in order, at most `agreeing`
 };
 
+/// Delays values by `ticks` calls, for measurements that arrive late.
+template <class T, int ticks>
+class DelayLine {
+    static_assert(ticks >= 0);
+
+  public:
+    /// Sets all past values.
+    void fill(const T& value) { past_.fill(value); }
+
+    /// Adds a value and returns the one of `ticks` calls ago, with 0 the value itself. O(1).
+    const T& pass(const T& value) {
+        past_[now_] = value;
+        now_ = (now_ + 1) % past_.size();
+        return past_[now_]; // the oldest
+    }
+
+  private:
+    std::array<T, std::size_t{ticks + 1}> past_{};
+    std::size_t now_ = 0;
+};
+
 /// Joint controller to copy and adapt: PD feedback, learned feed-forward and a disturbance observer. Call it
 /// like a ros2_control controller: `activate` once, then `update` in each period. Efforts are in the unit of
 /// the model's outputs, here A. The period is fixed at compile time. It needs no operating system and no
 /// heap, and its time per tick is bounded.
 ///
-/// The *correction* is the sum of feedback and observer. A joint without a new measurement (NaN, or a stamp
-/// that does not advance) keeps its correction for `hold_ticks`. Then the correction ramps to zero. When
-/// measurements return it ramps to its new value. A ramp changes by `step_share` of the limit per tick. The
-/// controller does not stop the arm: stop it if `ticks_without_sample` exceeds what your arm tolerates.
-class JointController {
+/// `delay_ticks`: age of a measurement when `update` receives it, in ticks; use `JointController` for 0. A
+/// measurement is compared with the reference, and learned with the effort, of its own time.
+///
+/// The *correction* is the sum of feedback and observer. It changes by at most `kick_share` of the limit per
+/// tick, so that a wrong reading, a late tick or a step of the reference makes no kick. A joint without a new
+/// measurement (NaN, or a stamp that does not advance) keeps its correction for `hold_ticks`. Then the
+/// correction ramps to zero. When measurements return it ramps to its new value. A ramp changes by
+/// `step_share` of the limit per tick. The controller does not stop the arm: stop it if
+/// `ticks_without_sample` exceeds what your arm tolerates.
+template <int delay_ticks>
+class DelayedJointController {
   public:
-    static constexpr int joints = 6;                     ///< of the arm and of the model
+    static constexpr int joints = 6; ///< of the arm and of the model
+    static_assert(joints == ur5_model::Model::joints && joints == ur5_model::Model::outputs,
+                  "the model is that of another arm");
     static constexpr std::int64_t period_ns = 1'000'000; ///< of `update`
     static constexpr int ticks_per_sample = 8;           ///< the model was trained on samples 8 ms apart
     static_assert(8 * period_ns * ticks_per_sample > 7 * ur5_model::constants.period_ns &&
@@ -70,7 +100,8 @@ class JointController {
     static constexpr float observer_share = 0.3F;   ///< of the limit: the observer's largest effort
     static constexpr float observer_step = 0.04F;   ///< of the limit: its change in a tick by noise
     static constexpr float vibration_swing = 0.05F; ///< of the limit: halves the observer's bandwidth
-    static constexpr float step_share = 0.02F;      ///< of the limit, per tick: 20 limits per second
+    static constexpr float kick_share = 0.1F;  ///< of the limit: largest change of a correction in a tick
+    static constexpr float step_share = 0.02F; ///< same, of a ramp: 20 limits per second
 
     using Learned = dfdyn::LearnedTorque<ur5_model::Model>;     ///< the model and its state
     using Forward = dfdyn::FeedForward<Learned>;                ///< nominal and learned effort
@@ -89,13 +120,13 @@ class JointController {
     struct Gains {
         float position;  ///< A/rad, > 0
         float velocity;  ///< A·s/rad, > 0
-        float inertia;   ///< A·s²/rad, approximate; 0 if unknown
+        float inertia;   ///< A·s²/rad, ≥ 0, approximate; 0 if unknown
         float limit;     ///< A, > 0
-        float bandwidth; ///< of the observer, rad/s, ≥ 0; see dfdyn::LoopMargin
+        float bandwidth; ///< of the observer, rad/s, ≥ 0, below 1 / period; see dfdyn::LoopMargin
     };
 
     /// Starts with the learned state of the model in flash. Call `activate` before the first `update`.
-    explicit JointController(const Gains& gains)
+    explicit DelayedJointController(const Gains& gains)
         : gains_(gains), learned_(ur5_model::constants, ticks_per_sample),
           forward_(learned_, {.period_ns = period_ns,
                               .ticks_per_sample = ticks_per_sample,
@@ -107,10 +138,11 @@ class JointController {
           observer_({}, {1e-9F * period_ns, all(gains.bandwidth), all(observer_share * gains.limit),
                          all(observer_step * gains.limit), all(vibration_swing * gains.limit)}),
           valid_(forward_.settings_valid() && std::isfinite(gains.position) && gains.position >= 0 &&
-                 std::isfinite(gains.velocity) && gains.velocity >= 0 && std::isfinite(gains.inertia)) {}
+                 std::isfinite(gains.velocity) && gains.velocity >= 0 && std::isfinite(gains.inertia) &&
+                 gains.inertia >= 0) {}
 
-    JointController(const JointController&) = delete; // its parts refer to each other
-    JointController& operator=(const JointController&) = delete;
+    DelayedJointController(const DelayedJointController&) = delete; // its parts refer to each other
+    DelayedJointController& operator=(const DelayedJointController&) = delete;
 
     /// Returns whether the gains are usable. With others every effort is 0: do not release the brakes.
     [[nodiscard]] bool valid() const { return valid_; }
@@ -119,36 +151,42 @@ class JointController {
     void activate(const State& state) {
         forward_.begin(state.time_ns, state.position.data());
         observer_.restart();
-        effort_ = excess_ = correction_ = all(0);
+        effort_ = effort_then_ = excess_ = correction_ = all(0);
+        references_.fill({state.position, all(0), all(0)}); // at rest until now
+        efforts_.fill(effort_);
         clock_.restart(state.time_ns);
         missed_ = {};
         recovering_ = {};
     }
 
     /// Performs one tick and returns the efforts to apply until the next one, A, within ± `limit`. `state`:
-    /// newest measurement. `nominal`: effort of your own model for the reference, A; zeros without a model.
-    const Efforts& update(const State& state, const Reference& reference, const Efforts& nominal) {
+    /// newest measurement. `reference`: one tick later than in the last call. `nominal`: effort of your own
+    /// model for the reference, A; zeros without a model. `applied`: false if the last efforts did not act on
+    /// the arm, as with closed brakes or after an emergency stop. Then nothing is learned or integrated, and
+    /// the corrections go to zero as without measurements.
+    const Efforts& update(const State& state, const Reference& reference, const Efforts& nominal,
+                          bool applied = true) {
         if (!valid_) {
             return effort_; // 0
         }
-        const Efforts before = effort_; // in effect until the present position was reached
         const Efforts& forward = forward_.update(reference, nominal.data());
-        const bool exact = correct(state, reference);
-        bool limited = !exact; // the effort then differs from what the motion requires
+        const bool measured = correct(state, references_.pass(reference), applied);
+        Efforts required; // by the motion, where known: the forecasts are compared with it
         for (int k = 0; k < joints; ++k) {
-            const float wanted = forward[k] + correction_[k];
-            effort_[k] = std::clamp(wanted, -gains_.limit, gains_.limit);
-            excess_[k] = wanted - effort_[k];
-            limited = limited || excess_[k] != 0;
+            effort_[k] = std::clamp(forward[k] + correction_[k], -gains_.limit, gains_.limit);
+            excess_[k] = forward[k] + wanted_[k] - effort_[k]; // what limit and ramp removed
+            correction_[k] = effort_[k] - forward[k];          // what acts: the next change starts from it
+            const bool exact = missed_[k] == 0 && !recovering_[k] && excess_[k] == 0;
+            required[k] = exact ? effort_[k] : unknown;
         }
-        if (!limited) {
-            forward_.commanded(effort_.data());
-        }
-        forward_.measured(state.time_ns, exact ? state.position.data() : nullptr, before.data());
+        forward_.commanded(required.data());
+        forward_.measured(state.time_ns, measured ? state.position.data() : nullptr, effort_then_.data());
+        effort_then_ = efforts_.pass(effort_);
         return effort_;
     }
 
-    /// Returns the number of ticks since the last new measurement of this joint.
+    /// Returns the number of ticks since the last new measurement of this joint. A tick whose efforts were
+    /// not applied counts as one without.
     [[nodiscard]] int ticks_without_sample(int joint) const { return missed_[joint]; }
 
     /// Announces that the arm has changed or is not the arm of the training. Without this call the learner
@@ -160,6 +198,8 @@ class JointController {
 
     /// Returns the feed-forward: its share, its learned part, and the learner with its counters.
     [[nodiscard]] const Forward& forward() const { return forward_; }
+    /// Returns the observer: its estimate, and what vibrations left of its bandwidths.
+    [[nodiscard]] const Observer& observer() const { return observer_; }
 
     /// Returns a writer that saves the learned state in pieces between ticks, for example to flash.
     [[nodiscard]] auto snapshot_writer() { return learned_.snapshot_writer(); }
@@ -167,46 +207,50 @@ class JointController {
     dfdyn::SnapshotResult restore(std::span<const std::byte> snapshot) { return learned_.restore(snapshot); }
 
   private:
-    static Efforts all(float value) { return {{value, value, value, value, value, value}}; }
+    static Efforts all(float value) {
+        Efforts filled;
+        std::ranges::fill(filled, value);
+        return filled;
+    }
 
-    /// Computes the corrections. Returns true if every joint has a new measurement and no correction is
-    /// rate-limited.
-    bool correct(const State& state, const Reference& reference) {
+    /// Computes the corrections. `reference`: at the time of the measurement. Returns true if every joint has
+    /// a new measurement.
+    bool correct(const State& state, const Reference& reference, bool applied) {
         const bool advanced = clock_.advances(state.time_ns);
-        Efforts error_rate, feedback;
+        Efforts error_rate, feedback, observed;
         for (int k = 0; k < joints; ++k) {
             error_rate[k] = reference.velocity[k] - state.velocity[k];
             feedback[k] = gains_.position * (reference.position[k] - state.position[k]) +
                           gains_.velocity * error_rate[k];
-            if (!advanced || !std::isfinite(feedback[k])) { // the observer ignores NaN
-                feedback[k] = std::numeric_limits<float>::quiet_NaN();
-            }
-            missed_[k] = std::isfinite(feedback[k]) ? 0 : std::min(missed_[k] + 1, most_missed);
+            const bool measured = advanced && applied && std::isfinite(feedback[k]);
+            missed_[k] = measured ? 0 : std::min(missed_[k] + 1, most_missed);
+            // limited like the effort: one wrong reading must not throw the observer to its limit
+            observed[k] = measured ? std::clamp(feedback[k], -gains_.limit, gains_.limit) : unknown;
         }
         const Efforts inertia = all(gains_.inertia);
         const Efforts& disturbance =
-            observer_.update(feedback.data(), inertia.data(), error_rate.data(), excess_.data());
-        bool exact = true;
+            observer_.update(observed.data(), inertia.data(), error_rate.data(), excess_.data());
+        bool every = true;
         for (int k = 0; k < joints; ++k) {
             forward_.observer_bandwidth_share(k, observer_.share()[k]);
             if (missed_[k] == 0) {
                 approach(k, feedback[k] + disturbance[k]);
-            } else if (missed_[k] > hold_ticks) {
-                recovering_[k] = true;
-                approach(k, 0);
             } else {
                 recovering_[k] = true;
+                approach(k, missed_[k] > hold_ticks ? 0.0F : correction_[k]);
             }
-            exact = exact && missed_[k] == 0 && !recovering_[k];
+            every = every && missed_[k] == 0;
         }
-        return exact;
+        return every;
     }
 
-    /// Sets a correction to `wanted`; after missing measurements it ramps there.
+    /// Moves a correction to `wanted`, by at most a share of the limit; a smaller one after missing
+    /// measurements.
     void approach(int k, float wanted) {
-        const float step = step_share * gains_.limit;
+        const float step = (recovering_[k] ? step_share : kick_share) * gains_.limit;
         const float before = correction_[k];
-        correction_[k] = recovering_[k] ? std::clamp(wanted, before - step, before + step) : wanted;
+        wanted_[k] = wanted;
+        correction_[k] = std::clamp(wanted, before - step, before + step);
         recovering_[k] = recovering_[k] && (missed_[k] > 0 || correction_[k] != wanted);
     }
 
@@ -216,10 +260,18 @@ class JointController {
     Observer observer_;
     bool valid_;
     static constexpr int most_missed = 1'000'000; // the count saturates
+    static constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
-    Efforts effort_{}, excess_{};
-    Efforts correction_{}; // of feedback and observer
+    Efforts effort_{};
+    Efforts effort_then_{}; // in effect until the position of the next measurement was reached
+    Efforts excess_{};
+    Efforts wanted_{}, correction_{}; // of feedback and observer: without and with the limits
+    DelayLine<Reference, delay_ticks> references_;
+    DelayLine<Efforts, delay_ticks> efforts_;
     StampClock clock_;
     dfdyn::Storage<int, joints> missed_{};      // ticks since the last measurement
     dfdyn::Storage<bool, joints> recovering_{}; // the correction is limited in its rate
 };
+
+/// The controller for measurements of the present tick.
+using JointController = DelayedJointController<0>;

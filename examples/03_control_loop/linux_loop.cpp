@@ -50,6 +50,10 @@ bool sleep_for_period(timespec& due) {
 } // namespace
 
 int main(int count, char** arguments) {
+    if (!loop.controller().valid()) { // every effort would be 0
+        std::puts("the controller's gains are out of range");
+        return 1;
+    }
     const bool timed = count > 1;
     const long seconds = timed ? std::strtol(arguments[1], nullptr, 10) : seconds_without_clock;
     if (timed) {

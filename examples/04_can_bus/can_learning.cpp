@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learning on a microcontroller: a periodic timer interrupt reads the received CAN frames, assembles and
-// checks a sample, predicts, and learns within its budget. The idle loop saves the learned state. In this
-// example the frames come from memory; for a board with a CAN controller, replace `Mailbox`.
+// checks a sample, predicts, and learns within its budget. The idle loop saves the learned state, and the
+// next start continues with it. In this example the frames come from memory; for a board with a CAN
+// controller, replace `Mailbox`.
 #include "report.hpp"
 #include "stack_watermark.hpp"
 #include "systick.hpp"
@@ -111,8 +112,18 @@ struct Statistics {
 };
 Statistics statistics;
 constexpr std::uint32_t interrupts_before_save = 150;
-std::array<std::byte, Estimator::snapshot_capacity> flash; ///< stands for flash memory: pages are appended
 volatile bool ended;
+
+/// A place for a snapshot in flash memory. Its number is erased first and written last, so that a place with
+/// a number has a whole snapshot, also after a power failure.
+struct Place {
+    std::array<std::byte, Estimator::snapshot_capacity> snapshot; ///< pages are appended
+    std::uint32_t number; ///< of the save, from 1; 0: there is no snapshot
+};
+std::array<Place, 2> flash; ///< written in turn: the last good snapshot is never overwritten
+
+Place& older() { return flash[0].number <= flash[1].number ? flash[0] : flash[1]; }
+Place& newer() { return flash[0].number <= flash[1].number ? flash[1] : flash[0]; }
 
 void learn(std::int64_t instant_ns) {
     const auto [sample, report] = assembly.assemble(instant_ns, mailbox.now_ns());
@@ -137,15 +148,36 @@ void end_of_interrupt() {
 /// Saves the learned state page by page, while the interrupt keeps ticking and predicting.
 void save() {
     constexpr std::size_t page_bytes = 256;
+    const std::uint32_t number = newer().number + 1;
+    Place& place = older();
+    place.number = 0;
     dfdyn::SnapshotWriter writer(estimator);
-    while (writer.step(flash, page_bytes) == dfdyn::SnapshotResult::in_progress) {
+    while (writer.step(place.snapshot, page_bytes) == dfdyn::SnapshotResult::in_progress) {
         asm volatile("wfi" ::: "memory"); // other work of the idle loop goes here
     }
-    (writer.result() == dfdyn::SnapshotResult::ok ? statistics.saved : statistics.refused) += 1;
+    const bool whole = writer.result() == dfdyn::SnapshotResult::ok;
+    place.number = whole ? number : 0;
+    (whole ? statistics.saved : statistics.refused) += 1;
 }
 
-/// Restores the last snapshot into an estimator, as after the next start.
-bool restored() { return estimator.restore(flash) == dfdyn::SnapshotResult::ok; }
+/// Restores the newest good snapshot: a damaged one is refused whole, and the one before it is used. Call it
+/// before the first tick. Returns false if there is none, as at the very first start.
+bool restore() {
+    for (const Place* const place : {&newer(), &older()}) {
+        if (place->number != 0 && estimator.restore(place->snapshot) == dfdyn::SnapshotResult::ok) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Returns whether the next start finds what was learned, also if the newest snapshot is damaged.
+bool survives_restart() {
+    save(); // before the power is switched off
+    const bool restored = statistics.refused == 0 && restore();
+    newer().snapshot[100] ^= std::byte{1};
+    return restored && restore();
+}
 
 bool learned_well() {
     const dfdyn::Counters& counters = estimator.counters();
@@ -160,7 +192,7 @@ bool learned_well() {
            " us of 1000, at 500 million instructions per second");
     report("; stack ", stack_used_bytes(), " bytes\n");
     return counters.ticks >= 285 && counters.predicted >= 275 && counters.learned > 50 &&
-           statistics.overruns == 0 && statistics.saved > 0 && statistics.refused == 0 && restored() &&
+           statistics.overruns == 0 && statistics.saved > 0 && survives_restart() &&
            statistics.error_square < 0.05F * statistics.output_square;
 }
 
@@ -178,6 +210,7 @@ extern "C" void systick_handler() {
 }
 
 int application() {
+    static_cast<void>(restore()); // what was learned before the last power-off
     start_systick(core_clock_hz / timer_hz - 1, SysTick::interrupts);
     while (!ended) {
         asm volatile("wfi" ::: "memory");

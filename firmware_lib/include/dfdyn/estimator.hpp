@@ -69,9 +69,10 @@ class Estimator {
     }
 
     /// Continues to learn earlier samples with at most the budget's multiply-adds, so that learning can be
-    /// spread over the time until the next sample. Returns true when nothing is left to do.
-    bool advance(Budget budget) noexcept {
-        held_ = !sequence_.try_change(0);
+    /// spread over the time until the next sample. `ticks`: control ticks that a `SnapshotWriter`'s hold
+    /// counts. Returns true when nothing is left to do.
+    bool advance(Budget budget, std::uint32_t ticks = 0) noexcept {
+        held_ = !sequence_.try_change(ticks);
         const bool idle = work(budget);
         end_change();
         return idle;
@@ -254,8 +255,8 @@ class Estimator {
         }
         Scalar noise_variance = 0;
         if (measured) {
-            noise_variance =
-                gate_.judge(doubtful ? outputs_.innovation_square(estimate.prediction) : Scalar(0));
+            noise_variance = weigh(doubtful ? outputs_.innovation_square(estimate.prediction) : Scalar(0),
+                                   budget.operations > 0);
             status.learning = noise_variance > 0 ? Reason::ok : Reason::innovation_too_large;
         }
         fold(budget, noise_variance, status);
@@ -266,6 +267,13 @@ class Estimator {
             estimate.normalised_innovation_squared = outputs_.innovation_square(estimate.prediction);
         }
         outputs_.to_output_units(*constants_, sample, measured, estimate);
+    }
+
+    /// Returns the noise variance of a sample by the gate. A sample that must not be learned, for example
+    /// because the caller knows of a contact, is no evidence of a change of the arm.
+    [[nodiscard]] Scalar weigh(Scalar innovation_square, bool may_learn) noexcept {
+        Gate unaffected = gate_;
+        return (may_learn ? gate_ : unaffected).judge(innovation_square);
     }
 
     /// Applies `Extrapolation` at this input; after a change of the arm, until `reset`, to the variances

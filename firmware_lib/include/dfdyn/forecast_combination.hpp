@@ -6,6 +6,7 @@
 #include "dfdyn/core/storage.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -132,8 +133,9 @@ class ForecastCombination {
 
     /// Updates the mean square errors with the members' `predictions` of a sample (a table) and its m
     /// `measured` outputs. Updates the mean variances with the deviations of the last `weigh`. `ahead`: table
-    /// of predictions of the same sample with older weights; may be `predictions`. A NaN error counts as the
-    /// largest possible one. Then computes the weights from the errors alone.
+    /// of predictions of the same sample with older weights; may be `predictions`. A NaN prediction counts as
+    /// the largest possible error. An output whose measured value is NaN or infinite is left out: its errors
+    /// and variances stay. Then computes the weights from the errors alone.
     constexpr void learn(const Scalar* predictions, const Scalar* ahead, const Scalar* measured) noexcept {
         for (int i = 0; i < count() && trust_ < 1; ++i) { // the past errors have lost influence
             mean_square_[i] = blended(mean_square_[i], noise_square_[i]);
@@ -146,6 +148,9 @@ class ForecastCombination {
         const bool scaled = samples_ >= memory_ || noise_square_[0] > 0;
         samples_ = samples_ < memory_ ? samples_ + 1 : memory_;
         for (int k = 0; k < outputs_; ++k) {
+            if (!std::isfinite(measured[k])) {
+                continue;
+            }
             update(mean_square_, predictions, measured[k], k, scaled);
             update(mean_square_ahead_, ahead, measured[k], k, scaled);
             for (int j = 0; j < members_; ++j) {

@@ -52,11 +52,12 @@ class InnovationGate {
           fall_(std::min<Scalar>(1 - Scalar(0.002) / Scalar(std::max<std::int32_t>(patience, 2)),
                                  1 - std::numeric_limits<Scalar>::epsilon())) {}
 
-    /// Starts a new motion with an empty count. Keeps the level and an unreported change.
+    /// Starts a new motion with an empty count. Keeps the level and an unreported change, as if it had just
+    /// been reported: what the last motion found also applies to the samples of this one.
     constexpr void restart() noexcept {
-        count_ = 0;
+        changed_ = change_pending_ && patience_ > 0;
+        count_ = changed_ ? settling * patience_ : 0;
         alarmed_ = false;
-        changed_ = false;
     }
 
     /// Checks one measured sample by its normalised innovation squared, ≥ 0 and not NaN. Returns the noise

@@ -149,6 +149,34 @@ TEST_CASE("an estimate does not jump when its bandwidth changes or it begins in 
     CHECK(change_to(3.11) < step);
 }
 
+TEST_CASE("one wrong rate or feedback lowers an observer's bandwidth for seconds only") {
+    constexpr float period = 1e-3F, inertia = 1.5F, excess = 0, push = 1;
+    const int before = GENERATE(0, 10); // ticks
+    CAPTURE(before);
+    const auto slope_after = [&](const float(&feedbacks)[2], float wrong_rate) {
+        DisturbanceObserver<float, 1> observer(
+            {}, {period, {{40}}, {{1100}}, {{0.5F}}, {{std::numeric_limits<float>::infinity()}}});
+        constexpr float zero = 0;
+        for (int tick = 0; tick < before; ++tick) {
+            observer.update(&zero, &inertia, &zero, &zero);
+        }
+        for (const float feedback : feedbacks) {
+            observer.update(&feedback, &inertia, &wrong_rate, &excess);
+            wrong_rate = 0;
+        }
+        float at_24_s = 0;
+        for (int tick = 1; tick <= 25'000; ++tick) {
+            const float rate = tick % 2 == 0 ? 0.0F : 0.005F; // noise
+            const float estimate = observer.update(&push, &inertia, &rate, &excess)[0];
+            at_24_s = tick == 24'000 ? estimate : at_24_s;
+        }
+        return observer.estimate()[0] - at_24_s;
+    };
+    CHECK(slope_after({0, 0}, 0) == Approx(40).epsilon(0.01));
+    CHECK(slope_after({0, 0}, 1e4F) >= 0.9F * 40);
+    CHECK(slope_after({3e38F, -3e38F}, 0) >= 0.9F * 40);
+}
+
 /// Torques of feedback and observer on a motor whose link is held by an elastic gear.
 struct ElasticRun {
     double share;  ///< left of the observer's bandwidth

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controller that users copy, without some of its measurements.
-#include "examples/03_control_loop/simulated_joints.hpp"
+#include "tests/firmware_lib/control/joint_controller_rig.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -14,54 +14,14 @@
 
 namespace joint_controller_test {
 
-constexpr JointController::Gains gains{
-    .position = 80, .velocity = 8, .inertia = 0.2F, .limit = 15, .bandwidth = 30};
-constexpr float largest_step = JointController::step_share * gains.limit;
-constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
-constexpr int joint = 2;
-
-/// The controller with its simulated arm; `pass` may change the measurement on its way.
-class Rig {
-  public:
-    Rig() { controller.activate(joints_.state()); }
-
-    template <class Pass>
-    void go(int ticks, Pass pass) {
-        largest_change = 0;
-        for (int i = 0; i < ticks; ++i) {
-            const JointController::Reference reference = SimulatedJoints::reference(tick_++);
-            JointController::State state = joints_.state();
-            pass(state);
-            const JointController::Efforts nominal = SimulatedJoints::nominal(reference);
-            const JointController::Efforts& effort = controller.update(state, reference, nominal);
-            for (int k = 0; k < JointController::joints; ++k) {
-                const float now = effort[k] - nominal[k] - controller.forward().learned_part()[k];
-                largest_change = std::max(largest_change, std::abs(now - correction[k]));
-                correction[k] = now;
-            }
-            joints_.advance(effort);
-        }
-    }
-    void go(int ticks) {
-        go(ticks, [](JointController::State& /*state*/) {});
-    }
-
-    JointController controller{gains};
-    JointController::Efforts correction{}; ///< of feedback and observer in the last tick, A
-    float largest_change = 0;              ///< of a correction in a tick of the last call of `go`, A
-
-  private:
-    SimulatedJoints joints_;
-    long tick_ = 0;
-};
-
 TEST_CASE("a controller with unusable gains commands nothing, and none is copied") {
     STATIC_REQUIRE_FALSE(std::is_copy_constructible_v<JointController>);
     STATIC_REQUIRE_FALSE(std::is_copy_assignable_v<JointController>);
     REQUIRE(JointController(gains).valid());
     for (float JointController::Gains::*gain :
          {&JointController::Gains::position, &JointController::Gains::velocity,
-          &JointController::Gains::limit, &JointController::Gains::bandwidth}) {
+          &JointController::Gains::inertia, &JointController::Gains::limit,
+          &JointController::Gains::bandwidth}) {
         for (const float wrong : {nothing, std::numeric_limits<float>::infinity(), -1.0F}) {
             JointController::Gains unusable = gains;
             unusable.*gain = wrong;
@@ -75,6 +35,14 @@ TEST_CASE("a controller with unusable gains commands nothing, and none is copied
             CHECK(std::ranges::all_of(effort, [](float one) { return one == 0; }));
         }
     }
+}
+
+TEST_CASE("a controller refuses a bandwidth of its observer that its period does not permit") {
+    JointController::Gains fast = gains;
+    fast.bandwidth = 0.99F * 1e9F / JointController::period_ns;
+    CHECK(JointController(fast).valid());
+    fast.bandwidth = 1.01F * 1e9F / JointController::period_ns;
+    CHECK_FALSE(JointController(fast).valid());
 }
 
 TEST_CASE("a joint without position keeps its correction and returns to it without a step") {

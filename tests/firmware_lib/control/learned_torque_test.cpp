@@ -128,24 +128,42 @@ TEST_CASE("a sample learned in slices changes the prediction when it is complete
     CHECK(learned.tick_cost() < 2 * Estimator<Kernel>::cost().predict + Estimator<Kernel>::cost().learn);
 }
 
-TEST_CASE("a prediction beyond the model's limit is reported and gives zeros") {
+TEST_CASE("a joint's prediction beyond its limit is unknown and leaves the other joint's unchanged") {
     DFDYN_SEEDED_ENGINE(engine);
     auto constants = make_constants<Kernel>(engine);
-    constants.prediction_limit = {{3, 3}};
-    const auto learned = learner_of<Kernel>(constants, engine);
-    int refused = 0;
+    const auto limited = learner_of<Kernel>(constants, engine);
+    const auto unlimited = std::make_unique<LearnedTorque<Kernel>>(*limited);
+    int beyond = 0;
     for (int t = 0; t < 200; ++t) {
         const auto sample = moving_sample<Kernel>(t, engine);
+        float expected[2];
         float torque[2];
-        const bool known = learned->predict(sample.time_ns, sample.position.data(), torque);
-        refused += known ? 0 : 1;
-        REQUIRE(std::abs(torque[0]) <= 3);
-        REQUIRE((known || (torque[0] == 0 && torque[1] == 0)));
+        constants.prediction_limit = {};
+        const bool known = unlimited->predict(sample.time_ns, sample.position.data(), expected);
+        constants.prediction_limit = {{3, 1e6F}};
+        REQUIRE(limited->predict(sample.time_ns, sample.position.data(), torque) == known);
+        REQUIRE(torque[1] == expected[1]);
+        const bool exceeds = std::abs(expected[0]) > 3;
+        REQUIRE(std::isnan(torque[0]) == exceeds);
+        beyond += exceeds ? 1 : 0;
     }
-    CHECK(refused > 20);
+    CHECK(beyond > 20);
 }
 
-TEST_CASE("a prediction that is not finite is reported and gives zeros, without a limit") {
+TEST_CASE("predictions that are all beyond the model's limits are reported and give zeros") {
+    DFDYN_SEEDED_ENGINE(engine);
+    auto constants = make_constants<Kernel>(engine);
+    constants.prediction_limit = {{1e-6F, 1e-6F}};
+    const auto learned = learner_of<Kernel>(constants, engine);
+    for (int t = 0; t < 200; ++t) {
+        const auto sample = moving_sample<Kernel>(t, engine);
+        float torque[] = {9, 9};
+        REQUIRE_FALSE(learned->predict(sample.time_ns, sample.position.data(), torque));
+        REQUIRE((torque[0] == 0 && torque[1] == 0));
+    }
+}
+
+TEST_CASE("a prediction that is not finite is unknown without a limit, and zeros are given without any") {
     DFDYN_SEEDED_ENGINE(engine);
     auto constants = make_constants<Kernel>(engine);
     REQUIRE((constants.prediction_limit[0] == 0 && constants.prediction_limit[1] == 0));
@@ -154,6 +172,7 @@ TEST_CASE("a prediction that is not finite is reported and gives zeros, without 
     float torque[] = {9, 9};
     learned.begin(0, rest);
     REQUIRE(learned.predict(period_ns, rest, torque));
+    const float good[] = {torque[0], torque[1]};
     const auto sound = constants.output_offset;
     using Limits = std::numeric_limits<float>;
     for (const float offset : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
@@ -161,12 +180,17 @@ TEST_CASE("a prediction that is not finite is reported and gives zeros, without 
             CAPTURE(offset, output);
             constants.output_offset = sound;
             constants.output_offset[output] = offset;
-            torque[0] = torque[1] = 9;
             learned.begin(0, rest);
-            CHECK_FALSE(learned.predict(period_ns, rest, torque));
-            CHECK(torque[0] == 0);
-            CHECK(torque[1] == 0);
+            CHECK(learned.predict(period_ns, rest, torque));
+            CHECK(std::isnan(torque[output]));
+            CHECK(torque[1 - output] == good[1 - output]);
         }
+        constants.output_offset = {{offset, offset}};
+        torque[0] = torque[1] = 9;
+        learned.begin(0, rest);
+        CHECK_FALSE(learned.predict(period_ns, rest, torque));
+        CHECK(torque[0] == 0);
+        CHECK(torque[1] == 0);
     }
 }
 
@@ -212,6 +236,30 @@ TEST_CASE("the learned state can be saved and then restored after a restart") {
     fresh.begin(0, rest);
     REQUIRE(fresh.predict(period_ns, rest, new_torque));
     CHECK(old_torque[0] != new_torque[0]);
+}
+
+TEST_CASE("an abandoned save stops learning for its control ticks, not for as many samples") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto constants = make_constants<Kernel>(engine);
+    constexpr int ticks = 8; // per sample
+    LearnedTorque<Kernel> learned(constants, ticks);
+    auto learn_next = [&, t = 0]() mutable {
+        const auto sample = moving_sample<Kernel>(t++, engine);
+        const Status status = learned.learn(sample.time_ns, sample.position.data(), sample.output.data());
+        for (int i = 1; i < ticks; ++i) {
+            learned.go_on();
+        }
+        return status.learning;
+    };
+    for (int t = 0; t < 12; ++t) {
+        learn_next(); // until the window of measurements is full
+    }
+    REQUIRE(learn_next() == Reason::learning_in_progress);
+    const auto writer = learned.snapshot_writer(2 * ticks); // never writes
+    CHECK(learn_next() == Reason::learning_held);
+    CHECK(learn_next() == Reason::learning_held);
+    CHECK(learn_next() == Reason::learning_in_progress);
+    CHECK(writer.written() == 0);
 }
 
 TEST_CASE("learning and predicting for a reference allocate nothing") {

@@ -60,6 +60,19 @@ TEMPLATE_TEST_CASE("a short contact is predicted and reported but not learned", 
     CHECK(static_cast<double>(estimate.normalised_innovation_squared) == Approx(62.5 * 62.5).epsilon(0.3));
 }
 
+TEMPLATE_TEST_CASE("a push that the caller keeps from being learned is no change of the arm at any length",
+                   "", UdFloat) {
+    DFDYN_SEEDED_ENGINE(engine);
+    WatchfulArm<TestType> arm(engine);
+    for (int t = 0; t < 20 * patience; ++t) {
+        const auto status = arm.estimator.tick(arm.touched(5), Budget::predict_only()).status;
+        REQUIRE(status.learning == Reason::innovation_too_large);
+    }
+    const auto learned = snapshot_of(arm.estimator);
+    CHECK(arm.refused(arm.touched(5)) == Reason::innovation_too_large);
+    CHECK(snapshot_of(arm.estimator) == learned);
+}
+
 TEMPLATE_TEST_CASE("a sample is learned if and only if the gate accepts it", "", UdFloat) {
     using Scalar = typename TestType::Scalar;
     DFDYN_SEEDED_ENGINE(engine);

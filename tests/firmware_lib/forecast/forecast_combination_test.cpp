@@ -116,6 +116,26 @@ TEMPLATE_TEST_CASE("after any errors the combination lies between its members", 
     }
 }
 
+TEMPLATE_TEST_CASE("an output without a measured value keeps its weights while the other one is learned", "",
+                   float, double) {
+    using Limits = std::numeric_limits<TestType>;
+    Combination<TestType> combined = combination<TestType>(50);
+    const Values<TestType> first_good{TestType(0.1), TestType(0.1), 1, 1, 5, 5};
+    const Values<TestType> last_good{5, 5, 1, 1, TestType(0.1), TestType(0.1)};
+    const std::array<TestType, outputs> both{};
+    for (int t = 0; t < 500; ++t) {
+        combined.learn(first_good.data(), both.data());
+    }
+    const TestType before = combined.weights()[1];
+    REQUIRE(before > TestType(0.99));
+    for (int t = 0; t < 300; ++t) {
+        const std::array<TestType, outputs> one{0, t % 2 == 0 ? Limits::quiet_NaN() : Limits::infinity()};
+        combined.learn(last_good.data(), one.data());
+    }
+    CHECK(combined.weights()[1] == before);
+    CHECK(combined.weights()[4] > TestType(0.98));
+}
+
 TEMPLATE_TEST_CASE("an absurdly large error is forgotten within five memories", "", float, double) {
     Combination<TestType> combined = combination<TestType>(50);
     const std::array<TestType, outputs> measured{};

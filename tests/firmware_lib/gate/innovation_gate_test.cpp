@@ -148,6 +148,21 @@ TEST_CASE("a new motion does not discard an unreported change") {
     CHECK(gate.take_change());
 }
 
+TEST_CASE("a change reported before a motion begins keeps the full weight of the motion's samples") {
+    Gate gate(limit, patience);
+    gate.report_change(); // as by `relearn`, before the controller is activated
+    gate.restart();
+    CHECK(gate.judge(pushed) == 1);
+    CHECK(gate.take_change());
+    gate.restart(); // the change has been reported: the next motion is judged as usual
+    CHECK(gate.judge(pushed) == 0);
+    Gate without(limit, 0);
+    without.report_change();
+    without.restart();
+    CHECK(without.change_pending());
+    CHECK(without.judge(pushed) == 1);
+}
+
 TEST_CASE("after a fault of any size and length the gate detects pushes again within a bounded time") {
     Gate gate(limit, patience);
     for (int t = 0; t < 100 * patience; ++t) {

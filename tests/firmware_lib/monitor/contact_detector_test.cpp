@@ -181,10 +181,77 @@ TEST_CASE("an error at an acceleration far above those of the training is no con
 TEST_CASE("a jump of an encoder hides contacts for a second only", "[contacts]") {
     LimitedArm one(0, 1);
     one.arm.run(
-        5, [](double t) { return t >= 2 && t < 2.002 ? 1e6 : 0.0; },
+        5, [](double t) { return t >= 2 && t < 2.002 ? 0.9 * Detector::largest_position : 0.0; },
         [](double t) { return t >= 3.2 && t < 3.6 ? 3.0 : 0.0; });
     CHECK(one.arm.contacts == 1);
     CHECK(one.arm.first_s == Approx(3.25).margin(0.05));
+}
+
+TEST_CASE("a position too large to be one leaves no velocity behind", "[contacts]") {
+    const double huge = GENERATE(1e308, -1e308, 1.1 * Detector::largest_position);
+    CAPTURE(huge);
+    Arm arm;
+    arm.run(
+        2, [huge](double t) { return t >= 1 && t < 1.002 ? huge : 0.0; }, still);
+    CHECK(arm.detector.speed(0) == 0);
+    CHECK(arm.detector.motion(0) == dfdyn::JointMotion::standing);
+    arm.run(2, still, push(2, 2.5));
+    CHECK(arm.contacts == 1);
+}
+
+TEST_CASE("stamps that jump from the latest to the earliest one end a contact", "[contacts]") {
+    using Stamps = std::numeric_limits<std::int64_t>;
+    constexpr int before = 1000, ticks = 1100;
+    Detector detector({}, limits);
+    const double zero[2]{};
+    const double pushed[2]{2, 0};
+    for (int i = 1; i <= ticks; ++i) {
+        detector.tick(Stamps::max() - (ticks - i) * period_ns, zero, i <= before ? zero : pushed, zero);
+    }
+    REQUIRE(detector.contact());
+    CHECK_FALSE(detector.tick(Stamps::min(), zero, pushed, zero));
+}
+
+TEST_CASE("a contact is found although every 20th tick has no sample", "[contacts]") {
+    Detector detector({}, limits);
+    const double zero[2]{};
+    const double pushed[2]{2, 0};
+    int found = 0; // tick
+    for (int i = 1; i <= 1500; ++i) {
+        const std::int64_t time_ns = i * period_ns;
+        if (i % 20 == 0) {
+            detector.skip(time_ns);
+        } else if (detector.tick(time_ns, zero, i < 1000 ? zero : pushed, zero) && found == 0) {
+            found = i;
+        }
+    }
+    CHECK(found > 1000);
+    CHECK(found < 1050);
+}
+
+TEST_CASE("a contact stays for a tenth of a second without samples and then ends", "[contacts]") {
+    Detector detector({}, limits);
+    const double zero[2]{};
+    const double pushed[2]{2, 0};
+    std::int64_t time_ns = 0;
+    const auto detect = [&] {
+        for (int i = 0; i < 1100; ++i) {
+            detector.tick(time_ns += period_ns, zero, i < 1000 ? zero : pushed, zero);
+        }
+        return detector.contact();
+    };
+    REQUIRE(detect());
+    for (int i = 0; i < 49; ++i) {
+        detector.skip(time_ns += period_ns);
+    }
+    CHECK(detector.contact());
+    detector.skip(time_ns += 2 * period_ns);
+    CHECK_FALSE(detector.contact());
+    CHECK_FALSE(detector.suspected());
+    CHECK_FALSE(detector.running());
+    REQUIRE(detect());
+    detector.skip(time_ns - 1); // the clock was set back: the gap is unknown
+    CHECK_FALSE(detector.contact());
 }
 
 TEST_CASE("a second push is a contact of its own if the error of the model remains between them",

@@ -28,13 +28,15 @@ namespace dfdyn {
 /// `LoopMargin` computes the bandwidth that a loop tolerates. Rounded positions make de/dt noisy, and b J
 /// de/dt more so than the damping of the feedback. The bandwidth is therefore at most `step` over the largest
 /// change of J de/dt in a tick, which is remembered for about `memory_s`. Where the feedback itself changes
-/// by more than `step` in a tick, what is more is taken off this `step`, down to a quarter of it.
+/// by more than `step` in a tick, what is more is taken off this `step`, down to a quarter of it. A change
+/// counts in full in its own tick. At most 16 steps of it are remembered (32 of the feedback's), so that one
+/// wrong value does not switch the observer off.
 ///
 /// Elastic gears, of which the margin knows nothing, can make a joint vibrate. Each time `VibrationWatch`
 /// finds that the torque of feedback and observer does so, the joint's bandwidth is halved, for good, down to
 /// `least_share`. Pass `share()` to `FeedForward::observer_bandwidth_share`.
 ///
-/// If the joint is blocked, the estimate rises to its limit. Cost: 23 multiply-adds per joint and tick, 3
+/// If the joint is blocked, the estimate rises to its limit. Cost: 26 multiply-adds per joint and tick, 3
 /// more at a turn; 19 n + 2 scalars. Never allocates.
 template <class Scalar, int n>
 class DisturbanceObserver {
@@ -71,24 +73,30 @@ class DisturbanceObserver {
     }
 
     /// Performs one tick and returns the estimate, N·m. All arguments have n values:
-    ///  - `feedback`: torque of the feedback in this tick, N·m;
+    ///  - `feedback`: torque of the feedback in this tick, N·m. Limit it like the command: otherwise a
+    ///    single wrong position takes the estimate to its limit;
     ///  - `inertia`: approximate inertia, kg·m²; 0 if unknown, at the expense of damping;
     ///  - `error_rate`: rate of the tracking error, rad/s;
-    ///  - `excess`: torque that the limits removed from the last command, N·m. An estimate does not grow
-    ///    against a limit (anti-windup).
+    ///  - `excess`: torque that limits and ramps removed from the last command, N·m. An estimate does not
+    ///    grow against a limit (anti-windup).
     ///
     /// A NaN or infinite value, or a product of inertia and rate that could overflow, leaves the estimate of
-    /// its joint unchanged.
+    /// its joint unchanged. The first rate after a restart is ignored if the bandwidth times inertia times
+    /// rate exceeds the limit.
     const Torques& update(const Scalar* feedback, const Scalar* inertia, const Scalar* error_rate,
                           const Scalar* excess) noexcept {
         for (int k = 0; k < joints_; ++k) {
             const Scalar momentum = inertia[k] * error_rate[k];
             const Scalar largest = 2 * (1 + settings_.bandwidth[k]) * momentum; // of all products below
-            if (!std::isfinite(largest) || !std::isfinite(feedback[k]) || !std::isfinite(excess[k])) {
+            const bool first = bandwidth_[k] <= 0;
+            // a wrong rate: the estimate could not follow it back
+            const bool beyond = first && std::abs(settings_.bandwidth[k] * momentum) > settings_.limit[k];
+            if (!std::isfinite(largest) || !std::isfinite(feedback[k]) || !std::isfinite(excess[k]) ||
+                beyond) {
                 watch_.pass(k);
                 continue;
             }
-            if (bandwidth_[k] <= 0) { // the first tick has no past
+            if (first) { // has no past
                 momentum_[k] = momentum;
                 feedback_[k] = feedback[k];
             }
@@ -123,10 +131,14 @@ class DisturbanceObserver {
 
     /// Returns the largest number of multiply-adds of `update`.
     [[nodiscard]] static constexpr std::int64_t cost(Extent<n> joint_count) noexcept {
-        return std::int64_t{26} * joint_count;
+        return std::int64_t{29} * joint_count;
     }
 
   private:
+    /// Largest changes that are remembered, in steps: of the estimate at the joint's bandwidth, and of the
+    /// feedback.
+    static constexpr Scalar most_remembered = 16, most_feedback_remembered = 32;
+
     /// Sets the bandwidth at which J de/dt changes the estimate by at most what the feedback's changes leave
     /// of twice the joint's step.
     void adapt_bandwidth(Scalar momentum, Scalar feedback, int k) noexcept {
@@ -136,6 +148,10 @@ class DisturbanceObserver {
         const Scalar step = settings_.step[k], most = share_[k] * settings_.bandwidth[k];
         const Scalar left = std::clamp(2 * step - feedback_change_[k], step / 4, step);
         bandwidth_[k] = most * change_[k] > left ? left / change_[k] : most;
+        if (most > 0) {
+            change_[k] = std::min(change_[k], most_remembered * step / most);
+        }
+        feedback_change_[k] = std::min(feedback_change_[k], most_feedback_remembered * step);
     }
 
     [[no_unique_address]] Extent<n> joints_;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "dfdyn/control/feed_forward_settings.hpp"
+#include "dfdyn/control/forecast_comparison.hpp"
 #include "dfdyn/control/reference.hpp"
 #include "dfdyn/core/strict_math.hpp"
-#include "dfdyn/forecast_combination.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,16 +33,16 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 ///
 /// Once per sample period of its model (a *knot*) the learner predicts the torque at the next knot: one or
 /// more forecasts, for the reference extrapolated at constant acceleration. Between knots the torque is
-/// interpolated. At each knot `commanded` compares the nominal torque and all forecasts of a joint with its
+/// interpolated. Once per knot `commanded` compares the nominal torque and all forecasts of a joint with its
 /// commanded torque. `ForecastCombination` weights them by their errors over the last `memory_s`. The command
 /// contains the feedback, so the comparison includes the tracking error and needs no torque sensor. Errors
 /// that are too fast for the feedback do not appear in the command and are not detected. Until `memory_s` of
-/// comparisons is available, only the nominal torque is used.
+/// comparisons of a joint is available, only its nominal torque is used.
 ///
 /// A `DisturbanceObserver` compensates slow errors of a forecast; fast ones remain as tracking error. Each
 /// error is therefore high-pass filtered with the observer's bandwidth before it is compared: its slow part,
 /// up to the observer's limit, counts with the share `slow_share` only. Errors are clipped to ± `limit`, and
-/// slow parts decay while nothing is compared. An absurd forecast is thus forgotten within the memory.
+/// slow parts decay while the joint is not compared. An absurd forecast is thus forgotten within the memory.
 ///
 /// An unknown forecast is left out. In the comparison it counts as the nominal torque, so it gains no weight;
 /// a forecast that was never known starts with the weight of the nominal torque. The known forecasts replace
@@ -57,7 +57,7 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 ///     each control tick:
 ///         torque = update(reference, nominal) + feedback + observer;
 ///         observer_bandwidth_share(k, observer.share()[k]);      // of each joint
-///         commanded(torque);                                     // unless a limit changed it
+///         commanded(torque);                                     // NaN for a joint that a limit changed
 ///         measured(time, position, torque that was in effect then);   // nullptr if unknown
 ///
 /// Learn from the command that was in effect when the position was read rather than from a torque sensor:
@@ -83,14 +83,10 @@ class FeedForward {
         : learner_(&learner), joints_(learner.output_count()), forecast_count_(learner.forecast_count()),
           settings_valid_(settings.valid(joints_)),
           settings_(settings_valid_ ? settings : Settings::no_torque(joints_)),
-          judged_for_(std::max(1, static_cast<int>(settings_.memory_s / settings_.sample_period_s()))),
-          combination_(extent<sum(forecasts, 1)>(forecast_count_ + 1), joints_,
-                       settings_.memory_s / settings_.sample_period_s()),
-          compared_(Compared::zeros(extent<product(sum(forecasts, 1), n)>((forecast_count_ + 1) * joints_))),
-          slow_(compared_), error_(compared_), followed_(Torques::zeros(joints_)),
+          comparison_(forecast_count_, joints_, settings_),
           from_(Forecasts::zeros(extent<product(forecasts, n)>(forecast_count_ * joints_))), to_(from_),
           mix_(from_), ahead_(Torques::zeros(joints_)), share_(ahead_), part_(ahead_), torque_(ahead_),
-          nominal_(ahead_), zero_(ahead_) {
+          nominal_(ahead_) {
         for (int k = 0; k < joints_; ++k) {
             observer_bandwidth_share(k, Scalar(1));
         }
@@ -100,8 +96,7 @@ class FeedForward {
     /// `DisturbanceObserver::share()`. Other values are ignored. `begin` keeps it. Cost: 2 multiplications.
     void observer_bandwidth_share(int k, Scalar share) noexcept {
         if (share >= 0 && share <= 1) {
-            const Scalar gain = share * settings_.bandwidth[k] * settings_.sample_period_s();
-            followed_[k] = std::min(gain, Scalar(1));
+            comparison_.follow(k, share * settings_.bandwidth[k], settings_);
         }
     }
 
@@ -112,16 +107,16 @@ class FeedForward {
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
         knot_ns_ = time_ns;
         tick_ = 0;
-        judged_ = 0;
-        combination_.restart();
+        since_knot_ = -1;
+        sample_tick_ = 0;
+        sample_lost_ = false;
+        comparison_.restart();
         learner_->begin(time_ns, position);
         for (int k = 0; k < joints_; ++k) {
             share_[k] = part_[k] = nominal_[k] = 0;
         }
         std::fill(mix_.begin(), mix_.end(), Scalar(1) / static_cast<Scalar>(int{forecast_count_}));
-        std::fill(slow_.begin(), slow_.end(), Scalar(0));
         known_ = next_known_ = false;
-        was_compared_ = true;
     }
 
     /// Includes or excludes the learned part in the torque, without a step. Learning continues in both cases.
@@ -129,67 +124,62 @@ class FeedForward {
     /// Returns whether the learned part is included. Initially true.
     [[nodiscard]] bool enabled() const noexcept { return enabled_; }
 
-    /// Returns the feed-forward torque of this tick, n values, N·m, within ± `limit`. `nominal`: torque of
-    /// your own model for the present `reference`, n values, N·m; zeros without a model. A NaN or infinite
-    /// one is replaced by the joint's last finite one, to avoid a step; by 0 before the first.
+    /// Returns the feed-forward torque of this tick, n values, N·m, within ± `limit`. `reference`: one tick
+    /// later than that of the last call, also after a lost cycle: the learner's window of the reference
+    /// counts calls, and a jump in it would be predicted as an acceleration. `nominal`: torque of your own
+    /// model for it, n values, N·m; zeros without a model. A NaN or infinite one is replaced by the joint's
+    /// last finite one, to avoid a step; by 0 before the first.
     const Torques& update(const Reference<Scalar, n>& reference, const Scalar* nominal) noexcept {
-        const int since_knot = static_cast<int>(tick_++ % settings_.ticks_per_sample);
-        if (since_knot == 0) {
+        since_knot_ = static_cast<int>(tick_++ % settings_.ticks_per_sample);
+        if (since_knot_ == 0) {
             go_to_next_knot(reference);
         }
-        const Scalar way = std::min((static_cast<Scalar>(since_knot) + lead) /
-                                        static_cast<Scalar>(settings_.ticks_per_sample),
-                                    Scalar(1));
+        way_ = std::min((static_cast<Scalar>(since_knot_) + lead) /
+                            static_cast<Scalar>(settings_.ticks_per_sample),
+                        Scalar(1));
         for (int k = 0; k < joints_; ++k) {
-            nominal_[k] = std::isfinite(nominal[k]) ? nominal[k] : nominal_[k];
-            const Scalar known_nominal = bounded(nominal_[k], settings_.limit[k]);
-            if (since_knot == 0) {
-                compared_[k] = known_nominal;
-                for (int i = k; i < from_.size(); i += joints_) {
-                    const Scalar forecast = from_[i] + way * (to_[i] - from_[i]);
-                    compared_[joints_ + i] = std::isfinite(forecast) ? forecast : known_nominal;
-                }
-            }
-            torque_[k] = with_learned(k, known_nominal, way);
+            nominal_[k] = bounded(std::isfinite(nominal[k]) ? nominal[k] : nominal_[k], settings_.limit[k]);
+            torque_[k] = with_learned(k, nominal_[k]);
         }
-        at_knot_ = since_knot == 0;
         return torque_;
     }
 
-    /// Compares the forecasts with the torque commanded in this tick (n values, N·m). Call it after `update`.
-    /// Do not call it if the command differs from the torque that the motion requires: at a limit, or while
-    /// positions are missing. If any value is NaN or infinite, nothing is compared in this tick.
+    /// Compares the forecasts with the torque commanded in this tick (n values, N·m). Call it in every tick,
+    /// after `update`. Each joint is compared once per knot, in the first tick with its command. NaN or
+    /// infinite: the joint is not compared in this tick. Pass NaN for a joint whose command differs from the
+    /// torque that the motion requires: at a limit, or while its positions are missing.
     void commanded(const Scalar* torque) noexcept {
-        if (!at_knot_ || !known_ || !next_known_) {
+        if (!known_ || !next_known_) {
             return;
         }
-        for (int i = 0; i < compared_.size(); ++i) {
-            if (!std::isfinite(compared_[i]) || !std::isfinite(torque[i % joints_])) {
-                return;
-            }
-        }
-        for (int i = 0; i < compared_.size(); ++i) {
-            const int k = i % joints_;
-            const Scalar error = bounded(compared_[i] - torque[k], settings_.limit[k]);
-            const Scalar taken_over = bounded(slow_[i], settings_.observer_limit[k]);
-            error_[i] = error - (1 - settings_.slow_share) * taken_over;
-            slow_[i] += followed_[k] * (error - slow_[i]);
-        }
-        was_compared_ = true;
-        combination_.learn(error_.data(), zero_.data());
-        judged_ = std::min(judged_ + 1, judged_for_);
+        comparison_.compare(torque, settings_, [this](int i) {
+            const Scalar nominal = nominal_[i % joints_];
+            const Scalar forecast = i < joints_ ? nominal : at_present(i - joints_);
+            return std::isfinite(forecast) ? forecast : nominal; // an unknown one gains no weight
+        });
     }
 
     /// Passes the newest measured position (n values, rad) and the torque that was in effect at that time (n
-    /// values, N·m); nullptr if unknown. Call it in every tick, after `update`: a sample is taken at each
-    /// knot, and learning continues between knots. `time_ns`: stamp of the measurement, by the clock of
-    /// `begin`; `SampleClock` documents the permitted jitter. `position`: nullptr if there is no new one. At
-    /// a knot this loses a sample, and learning waits until the window of the measured motion is full again.
+    /// values, N·m); nullptr if unknown. Call it in every tick, after `update`: a sample is taken once per
+    /// sample period, and learning continues in between. `time_ns`: stamp of the measurement, by the clock of
+    /// `begin`; `SampleClock` documents the permitted jitter. `position`: nullptr if there is no new one.
+    ///
+    /// Samples are taken at the knots. A sample whose position is missing is lost, and learning waits until
+    /// the window of the measured motion is full again. From the next period on, samples are taken in the
+    /// ticks in which a position has then arrived. The samples of a window are therefore always one period
+    /// apart, and encoders at a fraction of the loop's rate may have any phase.
     void measured(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
-        if (at_knot_ && position != nullptr) {
+        const bool due = since_knot_ == sample_tick_;
+        if (due && position != nullptr) {
             learner_->learn(time_ns, position, torque);
         } else {
             learner_->go_on();
+        }
+        if (due) {
+            sample_lost_ = position == nullptr;
+        } else if (sample_lost_ && position != nullptr) {
+            sample_tick_ = since_knot_;
+            sample_lost_ = false;
         }
     }
 
@@ -214,32 +204,27 @@ class FeedForward {
     [[nodiscard]] const Learner& learner() const noexcept { return *learner_; }
 
     /// Returns the maximum multiply-adds of `update` and `commanded` in a tick, without the learner's.
-    /// `at_knot`: true for a tick with a knot, false between knots.
+    /// `at_knot`: true for a tick with a knot, and for one that compares a joint that was not compared at the
+    /// knot; false for the others.
     [[nodiscard]] std::int64_t cost(bool at_knot) const noexcept {
         const std::int64_t of_learner = from_.size();
         const std::int64_t between = 1 + 10 * joints_ + 6 * of_learner;
-        const Cost compare = Combination::cost(extent<sum(forecasts, 1)>(forecast_count_ + 1), joints_);
-        return between + (at_knot ? 5 * joints_ + of_learner + 3 * compared_.size() + compare.learn : 0);
+        return between + (at_knot ? 5 * joints_ + of_learner + comparison_.cost() : 0);
     }
 
   private:
     using Forecasts = Storage<Scalar, product(forecasts, n)>;
-    using Compared = Storage<Scalar, product(sum(forecasts, 1), n)>;
-    using Combination = ForecastCombination<Scalar, sum(forecasts, 1), n>;
+    using Comparison = ForecastComparison<Scalar, forecasts, n>;
 
-    [[nodiscard]] Scalar period_s() const noexcept {
-        return Scalar(1e-9) * static_cast<Scalar>(settings_.period_ns);
-    }
+    [[nodiscard]] Scalar period_s() const noexcept { return settings_.period_s(); }
 
-    static Scalar bounded(Scalar value, Scalar limit) noexcept {
-        return std::isfinite(value) ? std::clamp(value, -limit, limit) : Scalar(0);
-    }
+    static Scalar bounded(Scalar value, Scalar limit) noexcept { return Comparison::bounded(value, limit); }
+
+    /// Returns element `i` of the forecasts, interpolated for the present tick.
+    [[nodiscard]] Scalar at_present(int i) const noexcept { return from_[i] + way_ * (to_[i] - from_[i]); }
 
     void go_to_next_knot(const Reference<Scalar, n>& reference) noexcept {
-        for (int i = 0; i < slow_.size() && !was_compared_; ++i) {
-            slow_[i] -= followed_[i % joints_] * slow_[i];
-        }
-        was_compared_ = false;
+        comparison_.begin_knot();
         knot_ns_ += settings_.period_ns * settings_.ticks_per_sample;
         for (int k = 0; k < joints_; ++k) {
             ahead_[k] = position_after(reference, k, settings_.sample_period_s());
@@ -260,7 +245,7 @@ class FeedForward {
     /// excess of its weight over the nominal torque's, at least 0.
     template <class Value>
     [[nodiscard]] Learned combined(int k, const Value& value) const noexcept {
-        const Scalar* const weights = combination_.weights();
+        const Scalar* const weights = comparison_.weights();
         Learned all{Scalar(0), 1 - weights[k], true};
         Scalar sum = 0;
         Scalar total = 0;
@@ -291,7 +276,7 @@ class FeedForward {
 
     /// Moves the forecasts' shares within the learned part of joint `k` towards their weights.
     void mix(int k) noexcept {
-        const Scalar* const earned = combination_.weights() + joints_;
+        const Scalar* const earned = comparison_.weights() + joints_;
         Scalar total = 0;
         Scalar farthest = 0;
         for (int i = k; i < mix_.size(); i += joints_) {
@@ -306,11 +291,11 @@ class FeedForward {
         }
     }
 
-    Scalar with_learned(int k, Scalar nominal, Scalar way) noexcept {
+    Scalar with_learned(int k, Scalar nominal) noexcept {
         mix(k);
-        const Learned learned = combined(k, [&](int i) { return from_[i] + way * (to_[i] - from_[i]); });
+        const Learned learned = combined(k, [this](int i) { return at_present(i); });
         const bool known = known_ && next_known_;
-        const Scalar earned = enabled_ && known && judged_ >= judged_for_ ? learned.earned : Scalar(0);
+        const Scalar earned = enabled_ && known && comparison_.judged(k) ? learned.earned : Scalar(0);
         share_[k] +=
             std::clamp(earned - share_[k], -period_s() / settings_.fall_s, period_s() / settings_.rise_s);
         const Scalar most = settings_.rate[k] * period_s();
@@ -324,24 +309,20 @@ class FeedForward {
     [[no_unique_address]] Extent<forecasts> forecast_count_;
     bool settings_valid_;
     Settings settings_;
-    int judged_for_; ///< number of compared knots before the learner is used
-    Combination combination_;
-    Compared compared_;     ///< torques of the present knot: the nominal ones, then the forecasts
-    Compared slow_, error_; ///< their errors: low-pass filtered, and as compared
-    Torques followed_;      ///< gain of the low-pass filter per sample period
-    Forecasts from_, to_;   ///< forecasts for the present and for the next knot
-    Forecasts mix_;         ///< shares of the forecasts in the learned part
+    Comparison comparison_;
+    Forecasts from_, to_; ///< forecasts for the present and for the next knot
+    Forecasts mix_;       ///< shares of the forecasts in the learned part
     Torques ahead_;
     Torques share_, part_, torque_;
-    Torques nominal_; ///< the last finite one
-    Torques zero_;
+    Torques nominal_;          ///< the last finite one, within the limit
+    Scalar way_ = 0;           ///< from the present to the next knot, of the interpolation
     std::int64_t knot_ns_ = 0; ///< time of the next knot
     std::int64_t tick_ = 0;
-    int judged_ = 0;
+    int since_knot_ = -1; ///< ticks
+    int sample_tick_ = 0; ///< ticks from a knot to its sample
     bool enabled_ = true;
     bool known_ = false, next_known_ = false; ///< whether the learner could predict each of the two knots
-    bool at_knot_ = false;
-    bool was_compared_ = true; ///< since the last knot
+    bool sample_lost_ = false;                ///< its position was missing, and no later one has arrived
 };
 
 } // namespace dfdyn

@@ -26,12 +26,17 @@ struct FeedForwardSettings {
     /// Weight of the error that the observer compensates, 0 … 1. A compromise between two cases: 0 is best
     /// for stop-and-go motions (both arms), 1 for tripled friction (the iCub's arm).
     Scalar slow_share = Scalar(0.3);
-    Torques bandwidth{};      ///< of the disturbance observer, rad/s, ≥ 0; 0: none
+    /// Bandwidth of the disturbance observer, rad/s, ≥ 0 and below 1 / period; 0: none.
+    Torques bandwidth{};
     Torques observer_limit{}; ///< of its estimate, N·m, ≥ 0; 0: it compensates nothing
 
+    /// Returns the control period, s.
+    [[nodiscard]] constexpr Scalar period_s() const noexcept {
+        return Scalar(1e-9) * static_cast<Scalar>(period_ns);
+    }
     /// Returns the sample period of the model, s.
     [[nodiscard]] constexpr Scalar sample_period_s() const noexcept {
-        return Scalar(1e-9) * static_cast<Scalar>(period_ns) * static_cast<Scalar>(ticks_per_sample);
+        return period_s() * static_cast<Scalar>(ticks_per_sample);
     }
 
     /// Returns whether all values, of this number of joints, are finite and within their ranges.
@@ -44,7 +49,7 @@ struct FeedForwardSettings {
         for (int k = 0; k < joints; ++k) {
             all = all && at_least(limit[k], above_zero) && at_least(cap[k], 0) &&
                   at_least(rate[k], above_zero) && at_least(bandwidth[k], 0) &&
-                  at_least(observer_limit[k], 0);
+                  bandwidth[k] * period_s() < 1 && at_least(observer_limit[k], 0);
         }
         return all;
     }

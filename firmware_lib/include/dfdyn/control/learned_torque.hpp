@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <type_traits>
 
@@ -84,15 +86,16 @@ class LearnedTorque {
 
     /// Continues to learn the sample. Call it in every control tick without a new sample.
     void go_on() noexcept {
-        estimator_.advance(share_);
+        estimator_.advance(share_, 1); // a control tick: it counts for a hold of a `SnapshotWriter`
         take_over_when_done();
     }
 
     /// Predicts the torque (n values, N·m) at the reference's `position` (n values, rad), one sample period
-    /// after the last call. Returns false and writes zeros while the window fills, if the input is out of
-    /// range, or if the prediction exceeds the model's limits. A NaN or infinite position restarts the
-    /// window. No variance is computed, so away from the data the prediction does not fade out as in an
-    /// `Estimate`; `FeedForward` compares it with the nominal torque instead.
+    /// after the last call. The torque of a joint is NaN if it is not finite or exceeds the model's limit for
+    /// this joint. Returns false and writes zeros if no joint has a torque: while the window fills, if the
+    /// input is out of range, or if all exceed their limits. A NaN or infinite position restarts the window.
+    /// No variance is computed, so away from the data the prediction does not fade out as in an `Estimate`;
+    /// `FeedForward` compares it with the nominal torque instead.
     bool predict(std::int64_t time_ns, const Scalar* position, Scalar* torque) noexcept {
         bool known = true;
         for (int k = 0; k < output_count(); ++k) {
@@ -107,15 +110,11 @@ class LearnedTorque {
         if (known) {
             columns_.predict_with(weights_.data(), torque);
         }
-        for (int k = 0; known && k < output_count(); ++k) {
-            torque[k] = constants_->output_offset[k] + constants_->output_noise_std[k] * torque[k];
-            const Scalar limit = constants_->prediction_limit[k];
-            known = std::isfinite(torque[k]) && !(limit > 0 && std::abs(torque[k]) > limit);
-        }
-        for (int k = 0; !known && k < output_count(); ++k) {
+        const bool any = known && bound(torque);
+        for (int k = 0; !any && k < output_count(); ++k) {
             torque[k] = 0;
         }
-        return known;
+        return any;
     }
 
     /// See `Estimator::relearn`: for an arm that has changed, or is not the arm of the training.
@@ -137,7 +136,8 @@ class LearnedTorque {
     [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
         return estimator_.snapshot(buffer);
     }
-    /// Returns a writer that takes a snapshot in pieces while an interrupt ticks: see `SnapshotWriter`.
+    /// Returns a writer that takes a snapshot in pieces while an interrupt ticks: see `SnapshotWriter`. Its
+    /// ticks are control ticks: calls of `learn` and `go_on`.
     [[nodiscard]] SnapshotWriter<Estimator>
     snapshot_writer(std::uint32_t max_held_ticks = SnapshotWriter<Estimator>::default_held_ticks) noexcept {
         return SnapshotWriter<Estimator>(estimator_, max_held_ticks);
@@ -179,6 +179,20 @@ class LearnedTorque {
             sample_.position[k] = position[k];
         }
         columns_.push(sample_);
+    }
+
+    /// Converts predictions in units of the noise to torques; NaN for one beyond its limit, so that the other
+    /// joints keep theirs. Returns whether any joint has a torque.
+    bool bound(Scalar* torque) const noexcept {
+        bool any = false;
+        for (int k = 0; k < output_count(); ++k) {
+            const Scalar value = constants_->output_offset[k] + constants_->output_noise_std[k] * torque[k];
+            const Scalar limit = constants_->prediction_limit[k];
+            const bool good = std::isfinite(value) && !(limit > 0 && std::abs(value) > limit);
+            torque[k] = good ? value : std::numeric_limits<Scalar>::quiet_NaN();
+            any = any || good;
+        }
+        return any;
     }
 
     void take_over_when_done() noexcept {

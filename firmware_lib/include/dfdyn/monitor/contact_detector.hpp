@@ -23,7 +23,8 @@ namespace dfdyn {
 /// baseline. No contact begins within `settling_s` after an interruption or a gap over `longest_gap_s`.
 ///
 /// It is a detector, not a safety function: contacts below the limits or slower than the baseline are not
-/// detected. docs/guide/contacts.md lists the recordings that chose the constants. Use in each tick:
+/// detected. docs/guide/contacts.md lists the recordings that chose the constants. Use in each tick; learn,
+/// with a budget > 0, only while a joint moves (`motion`) and no contact is `suspected`:
 ///
 ///     const auto estimate = estimator.tick(sample, budget);
 ///     if (estimate.status.estimated() && sample.output_valid) {
@@ -32,7 +33,7 @@ namespace dfdyn {
 ///         }
 ///         detector.tick(sample.time_ns, sample.position.data(), error, estimate.prediction.data());
 ///     } else {
-///         detector.interrupt();
+///         detector.skip(sample.time_ns);
 ///     }
 ///
 /// Do not use `Estimate::innovation`: it is 0 for an output beyond the model's limit, as in the hardest
@@ -49,7 +50,8 @@ class ContactDetector {
     static constexpr Scalar longest_gap_s = Scalar(0.1); ///< between two stamps, s; a longer one interrupts
     static constexpr Scalar settling_s = Scalar(0.5);    ///< after an interruption without contacts, s
     static constexpr Scalar most_range = 20; ///< an encoder's jump then masks contacts for a second only
-    static constexpr int cost = 40;          ///< maximum multiply-adds of `tick` per joint
+    static constexpr Scalar largest_position = 10'000; ///< rad; a larger one is no position
+    static constexpr int cost = 40;                    ///< maximum multiply-adds of `tick` per joint
 
     /// `limits`: one per joint; kept by reference.
     ContactDetector(Extent<joints> count, const ContactLimits<Scalar>* limits) noexcept
@@ -60,13 +62,14 @@ class ContactDetector {
     }
 
     /// Adds the positions (rad), errors and predictions (the outputs' unit) at a stamp. Returns true during a
-    /// contact. Values that are not finite interrupt. After a gap, or if the stamp does not increase, the
-    /// comparison starts anew with these values, and a contact ends.
+    /// contact. Values that are not finite, and positions beyond ± `largest_position`, interrupt. After a
+    /// gap, or if the stamp does not increase, the comparison starts anew with these values, and a contact
+    /// ends.
     bool tick(std::int64_t time_ns, const Scalar* position, const Scalar* error,
               const Scalar* prediction) noexcept {
-        const Scalar dt = static_cast<Scalar>(time_ns - time_ns_) * Scalar(1e-9);
+        const Scalar dt = since_last(time_ns);
         time_ns_ = time_ns;
-        if (!finite(position, error, prediction)) {
+        if (!valid(position, error, prediction)) {
             interrupt();
             return false;
         }
@@ -92,7 +95,16 @@ class ContactDetector {
         return contact_;
     }
 
-    /// Registers a tick without a prediction or a measurement.
+    /// Registers a tick without a prediction or a measurement, at `time_ns` by the clock of the stamps.
+    /// Interrupts only after `longest_gap_s` without one, or if the clock went back: until then a contact
+    /// stays, and single lost samples do not keep contacts from being detected. O(1).
+    void skip(std::int64_t time_ns) noexcept {
+        if (time_ns < time_ns_ || since_last(time_ns) > longest_gap_s) {
+            interrupt();
+        }
+    }
+
+    /// Ends a contact and the comparison, which begins anew with the next tick: for a restart of the motion.
     void interrupt() noexcept {
         running_ = false;
         contact_ = false;
@@ -131,9 +143,20 @@ class ContactDetector {
     using Joint = JointDeviation<Scalar>;
     using Steps = typename Joint::Steps;
 
-    bool finite(const Scalar* position, const Scalar* error, const Scalar* prediction) const noexcept {
+    /// Returns the time since the last stamp, s; 0 if this one is not later. The unsigned difference cannot
+    /// overflow.
+    [[nodiscard]] Scalar since_last(std::int64_t time_ns) const noexcept {
+        const std::uint64_t step_ns =
+            static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(time_ns_);
+        return time_ns > time_ns_ ? static_cast<Scalar>(step_ns) * Scalar(1e-9) : Scalar(0);
+    }
+
+    /// Returns whether the values are finite. A huge finite position would leave an infinite velocity, which
+    /// no later position corrects.
+    bool valid(const Scalar* position, const Scalar* error, const Scalar* prediction) const noexcept {
+        const auto near = [](Scalar value) { return std::abs(value) <= largest_position; };
         const auto good = [](Scalar value) { return std::isfinite(value); };
-        return std::all_of(position, position + count_, good) && std::all_of(error, error + count_, good) &&
+        return std::all_of(position, position + count_, near) && std::all_of(error, error + count_, good) &&
                std::all_of(prediction, prediction + count_, good);
     }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a feed-forward compares the errors of forecasts, and what a tick costs.
-#include "tests/firmware_lib/control/told_learner.hpp"
+#include "tests/firmware_lib/feed_forward/told_learner.hpp"
 #include "tests/firmware_lib/support/counted.hpp"
 #include "tests/support/catch.hpp"
 
@@ -145,7 +145,8 @@ TEST_CASE("a feed-forward of several forecasts costs at most its declared cost")
     for (int tick = 0; tick < 2000; ++tick) {
         const std::int64_t before = counted_operations;
         forward.update({}, nominal.data());
-        if (tick % 100 != 0) { // after a knot without comparison the slow errors fade, too
+        const int knot = tick / ticks_per_sample;
+        if (knot % 25 != 0) { // after a knot without comparison the slow errors fade, too
             forward.commanded(nominal.data());
         }
         std::int64_t& largest = most[tick % ticks_per_sample == 0 ? 1 : 0];
@@ -156,6 +157,16 @@ TEST_CASE("a feed-forward of several forecasts costs at most its declared cost")
         CHECK(most[at_knot] <= forward.cost(at_knot));
         CHECK(most[at_knot] >= forward.cost(at_knot) - 20); // part of it arises with known noise only
     }
+    std::int64_t late = 0; // the comparison of a command that comes after the knot
+    for (int tick = 0; tick < 200; ++tick) {
+        const std::int64_t before = counted_operations;
+        forward.update({}, nominal.data());
+        if (tick % ticks_per_sample != 0) {
+            forward.commanded(nominal.data());
+        }
+        late = std::max(late, counted_operations - before);
+    }
+    CHECK(late <= forward.cost(true));
 }
 
 TEST_CASE("a nominal torque that is not finite is replaced by the last finite one") {
@@ -203,6 +214,8 @@ TEST_CASE("settings outside their ranges give no torque") {
         CHECK(torque_with(with([&](auto& wrong) { wrong.bandwidth[0] = value; })) == 0);
         CHECK(torque_with(with([&](auto& wrong) { wrong.observer_limit[0] = value; })) == 0);
     }
+    const double loop_rate = 1 / period_s; // rad/s: the observer would be unstable
+    CHECK(torque_with(with([&](auto& wrong) { wrong.bandwidth[0] = 1.001 * loop_rate; })) == 0);
     CHECK(torque_with(with([](auto& wrong) { wrong.ticks_per_sample = 0; })) == 0);
     CHECK(torque_with(with([](auto& wrong) { wrong.period_ns = 0; })) == 0);
 }

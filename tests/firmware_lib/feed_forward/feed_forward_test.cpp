@@ -2,7 +2,7 @@
 #include "dfdyn/control/feed_forward.hpp"
 
 #include "tests/firmware_lib/control/joint.hpp"
-#include "tests/firmware_lib/control/told_learner.hpp"
+#include "tests/firmware_lib/feed_forward/told_learner.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 

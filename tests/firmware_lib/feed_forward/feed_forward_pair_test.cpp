@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a feed-forward chooses among several forecasts, known and unknown.
 #include "dfdyn/control/learner_pair.hpp"
-#include "tests/firmware_lib/control/told_learner.hpp"
+#include "tests/firmware_lib/feed_forward/told_learner.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
