@@ -26,7 +26,11 @@ void add_model(CLI::App& command, LoopOptions& options) {
                     "Continues from the learned state that --save wrote in an earlier run of the model")
         ->excludes("--from-prior")
         ->type_name("FILE");
-    command.add_option("--save", options.saved, "Writes the learned state at the end")->type_name("FILE");
+    command
+        .add_option("--save", options.saved,
+                    "Writes the learned state at the end, except after a stop by the loop itself; an earlier "
+                    "file stays")
+        ->type_name("FILE");
     command
         .add_option("--on-finding", options.on_finding,
                     "What to do when the learner's monitor names a change, as CAUSE=ACTION,...: report (the "
@@ -49,20 +53,22 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
     command
         .add_option("--following-error", limits.following_error,
                     "Largest distance from the reference, rad (m); one value, or one per joint. Default: 0.8 "
-                    "of the torque limit, divided by the position gain")
+                    "of the torque limit divided by the position gain, at most 0.5 rad or 0.1 m")
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("E");
     command
         .add_option("--speed-limit", limits.speed,
-                    "Largest speed, rad/s (m/s); one value, or one per joint. Default: the robot's limit")
+                    "Largest speed, rad/s (m/s); one value, or one per joint. Default: the robot's limit, if "
+                    "at most 100; otherwise none")
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("V");
     command
         .add_option("--observer-bandwidth", limits.observer_bandwidth,
                     "Bandwidth of the disturbance observer, rad/s; one value, or one per joint; 0: no "
-                    "observer. Default: from docs/guide/loop.md, at most 40")
+                    "observer. At most 0.2 times the loop's rate in Hz. Default: from docs/guide/loop.md, at "
+                    "most 40")
         ->delimiter(',')
         ->check(number_from_zero())
         ->type_name("B");
@@ -81,9 +87,8 @@ void add_stop(CLI::App& command, StopMode& stop) {
         .add_option_function<std::string>(
             "--stop",
             [&stop](const std::string& mode) { stop = mode == "limp" ? StopMode::limp : StopMode::hold; },
-            "After a stop: hold the arm until Ctrl-C or the end of --duration, or go limp 0.2 s after the "
-            "brakes were "
-            "requested")
+            "After a stop: hold the arm until Ctrl-C or the end of --duration, or end 0.2 s after the brakes "
+            "were requested. At the end the torque goes to zero within 0.1 s")
         ->check(one_of({"hold", "limp"}))
         ->default_str("hold")
         ->type_name("hold|limp");

@@ -243,7 +243,15 @@ void check_bus(const BusDescription& bus, const Robot& robot, const Scenario& sc
         throw InputError(bus.source + ": output: expected a scenario with force_torque for this sensor, "
                                       "found one without");
     }
-    if (bus.outputs == OutputKind::motor_current && !scenario.torque_sensor.torque_constant) {
+    const bool currents = bus.outputs == OutputKind::motor_current;
+    if (currents && std::ranges::any_of(
+                        bus.boards, [](const BusBoard& board) { return board.board->commands_efforts(); })) {
+        throw InputError(bus.source +
+                         ": output.quantity: expected tau, with effort_per_count in N·m, because "
+                         "the torque command of these drives has the unit of their efforts, "
+                         "found i");
+    }
+    if (currents && !scenario.torque_sensor.torque_constant) {
         throw InputError(bus.source + ": output.quantity: expected a scenario with "
                                       "actuators.torque_constant_nm_per_a for currents, found one without");
     }

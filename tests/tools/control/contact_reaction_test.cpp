@@ -120,17 +120,22 @@ class Watch {
     std::uint64_t learned_ = 0;
 };
 
-Outcome run(FindingAction reaction, double size_nm = push_nm, double for_s = 0.3,
-            const BusDescription* bus = nullptr) {
-    const std::string fault = R"([{"kind": "push", "joint": 1, "torque_nm": )" + std::to_string(size_nm) +
-                              R"(, "from_s": 6, "for_s": )" + std::to_string(for_s) + "}]";
+Outcome run_with(FindingAction reaction, const std::string& faults, double for_s,
+                 const BusDescription* bus = nullptr) {
     LoopModel model = learned_model();
     LoopLimits limits;
     limits.on_contact = reaction;
-    ClosedLoop loop(test_pendulum(), scenario_with(fault), "test", &model, bus, limits);
+    ClosedLoop loop(test_pendulum(), scenario_with(faults), "test", &model, bus, limits);
     Watch watch(loop, push_s + for_s);
     loop.run_to(16, [&](const ClosedLoopInstant& instant) { watch.observe(instant); });
     return watch.outcome();
+}
+
+Outcome run(FindingAction reaction, double size_nm = push_nm, double for_s = 0.3,
+            const BusDescription* bus = nullptr) {
+    const std::string push = R"([{"kind": "push", "joint": 1, "torque_nm": )" + std::to_string(size_nm) +
+                             R"(, "from_s": 6, "for_s": )" + std::to_string(for_s) + "}]";
+    return run_with(reaction, push, for_s, bus);
 }
 
 void check_detected(const Outcome& outcome, FindingAction reaction) {
@@ -153,6 +158,28 @@ TEST_CASE("a loop that stops at a contact stops within a tenth of a second and n
     CHECK(outcome.state == LoopState::stopped);
     CHECK(outcome.cause == StopCause::finding);
     CHECK(outcome.summary.find("finding: external_contact at joint 1") != std::string::npos);
+}
+
+TEST_CASE("a loop also names a contact that takes its command to the limit of the torque", "[contacts]") {
+    for (const double size_nm : {6.0, 9.0, 12.0, 16.0, 20.0}) {
+        CAPTURE(size_nm);
+        const Outcome outcome = run(FindingAction::stop, size_nm);
+        CHECK(outcome.cause == StopCause::finding);
+        REQUIRE(outcome.actions.size() == 1);
+        CHECK(outcome.actions.front().cause == dfdyn::Cause::contact);
+        CHECK(outcome.actions.front().time_s - push_s < 0.1);
+    }
+}
+
+TEST_CASE("a loop also names a contact while frames are lost", "[contacts]") {
+    const BusDescription bus = one_drive(at_sync);
+    for (const double lost : {0.01, 0.02, 0.05}) {
+        CAPTURE(lost);
+        const std::string faults = R"([{"kind": "frames_lost", "share": )" + std::to_string(lost) +
+                                   R"(, "from_s": 0, "for_s": 16}, {"kind": "push", "joint": 1, )" +
+                                   R"("torque_nm": 2.5, "from_s": 6, "for_s": 0.3}])";
+        CHECK(run_with(FindingAction::stop, faults, 0.3, &bus).cause == StopCause::finding);
+    }
 }
 
 TEST_CASE("a loop that holds at a contact stops on its path and stays there", "[contacts]") {

@@ -48,6 +48,8 @@ class Board {
     virtual std::optional<hal::Frame> torque_command(int /*joint*/, double /*torque_Nm*/) const {
         return std::nullopt;
     }
+    /// True if its torque command is in the unit of its efforts, which must then be N·m.
+    virtual bool commands_efforts() const { return false; }
     /// Decodes the torque (N·m) that `frame` commands to this joint of the board; none for any other frame.
     virtual std::optional<double> commanded_torque(int /*joint*/, const hal::Frame& /*frame*/) const {
         return std::nullopt;

@@ -22,6 +22,7 @@ class Cia402Drive final : public BoardOf<Cia402Drive, hal::Cia402Drive> {
     std::optional<hal::Frame> torque_command(int /*joint*/, double torque_Nm) const override {
         return codec().has_effort() ? std::optional(codec().encode_target_torque(torque_Nm)) : std::nullopt;
     }
+    bool commands_efforts() const override { return codec().has_effort(); }
     std::optional<double> commanded_torque(int /*joint*/, const hal::Frame& frame) const override {
         return codec().has_effort() ? codec().decode_target_torque(frame) : std::nullopt;
     }

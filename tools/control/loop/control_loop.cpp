@@ -67,10 +67,10 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
     }
     const bool found = actions_.stop().has_value();
     const StopCause joint = watch_.cause() == StopCause::none && found ? StopCause::finding : watch_.cause();
-    const LoopState state =
-        safe_stop_.tick({feedback_.complete(), input.deadline_missed, input.bus_lost, input.stop_requested,
-                         input.returning, joint, feedback_.longest_silence(), watch_.joint()},
-                        yields_ ? zero_ : error_);
+    const LoopState state = safe_stop_.tick(
+        {feedback_.complete(), input.deadline_missed, input.bus_lost, input.stop_requested, input.returning,
+         joint, feedback_.longest_silence(), watch_.joint(), feedback_.silent_joint()},
+        yields_ ? zero_ : error_);
     if (state == LoopState::running) {
         follow();
     } else if (state != LoopState::waiting && moved()) {
@@ -134,22 +134,30 @@ void ControlLoop::follow() {
     counters_.limited += limit() ? 1 : 0;
     excess_ = unlimited - command_;
     feedback_torque_ = command_ - forward;
-    // the command equals the torque of the motion
     const bool full = excess_.isZero(0) && feedback_.regular();
     if (full && !touched_) {
         feed_forward_.commanded(command_);
     }
     learn();
-    commands_[tick_ % commands_.size()] = full ? command_ : JointVector();
+    commands_[tick_ % commands_.size()] = {command_, full};
     act();
     meet_contact();
 }
 
 void ControlLoop::learn() {
     const int ago = learnable_ago_.value_or(0);
-    const double ticks = static_cast<double>(tick_) - ago;
-    feed_forward_.measured(start_ns_ + std::llround(ticks * config_.period_s * 1e9),
-                           learnable_ago_ ? &feedback_.position() : nullptr, command_then(ago));
+    const std::int64_t at = static_cast<std::int64_t>(tick_) - ago;
+    const bool fresh = at > learned_tick_;
+    // a lost cycle is bridged: otherwise forecasts and contacts would be missing for the length of the window
+    const bool bridged = fresh && !learnable_ago_ && feedback_.known();
+    const JointVector position =
+        bridged ? JointVector(measured_reference().position - feedback_.error()) : feedback_.position();
+    const bool measured = bridged || (fresh && learnable_ago_);
+    const Sent* const then = command_then(ago);
+    learned_tick_ = measured ? at : learned_tick_;
+    feed_forward_.measured(start_ns_ + std::llround(static_cast<double>(at) * config_.period_s * 1e9),
+                           measured ? &position : nullptr, then != nullptr ? &then->torque : nullptr,
+                           !bridged && then != nullptr && then->full);
 }
 
 void ControlLoop::meet_contact() {
@@ -224,12 +232,10 @@ void ControlLoop::act() {
     }
 }
 
-const JointVector* ControlLoop::command_then(int ago) const noexcept {
+const ControlLoop::Sent* ControlLoop::command_then(int ago) const noexcept {
     // the command was held until the reading
     const auto before = static_cast<std::size_t>(config_.delay_ticks + ago) + 1;
-    const JointVector* const then =
-        tick_ >= before ? &commands_[(tick_ - before) % commands_.size()] : nullptr;
-    return then != nullptr && then->size() > 0 ? then : nullptr;
+    return tick_ >= before ? &commands_[(tick_ - before) % commands_.size()] : nullptr;
 }
 
 JointVector ControlLoop::disturbance() {

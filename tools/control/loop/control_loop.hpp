@@ -92,7 +92,9 @@ struct LoopCounters {
 /// - a joint cannot be damped;
 /// - `brake_timeout_s` after `stopped`.
 ///
-/// The torque ends `brake_ticks` later, in StopMode::limp only.
+/// `brake_ticks` later the torque ends if the loop does: in StopMode::limp, after a requested stop, or after
+/// `give_up_s` without a position. It goes to zero by at most a torque limit per `stop_time_s`, so that
+/// drives that keep their last command keep no torque.
 class ControlLoop {
   public:
     static constexpr double feedback_step = 0.1, recovery_step = 0.05;
@@ -114,7 +116,8 @@ class ControlLoop {
 
     LoopState state() const noexcept { return safe_stop_.state(); }
     StopCause cause() const noexcept { return safe_stop_.cause(); }
-    /// Joint (from 0) that caused following_error, overspeed, torque_limit or frozen_encoder.
+    /// Joint (from 0) that caused following_error, overspeed, torque_limit or frozen_encoder, or that alone
+    /// caused no_position.
     std::optional<Eigen::Index> stopped_by() const noexcept { return safe_stop_.joint(); }
     /// Reactions to findings and contacts except `report`; the first 64, and the one that stops the loop.
     const std::vector<TakenAction>& actions() const noexcept { return actions_.list(); }
@@ -122,11 +125,11 @@ class ControlLoop {
     const std::optional<TakenAction>& stopping_action() const noexcept { return actions_.stop(); }
     /// Returns whether the program should close the arm's brakes; stays true.
     bool brake_requested() const noexcept { return brake_tick_.has_value(); }
-    /// Returns whether the torque has ended: in StopMode::limp, after the brakes had time to close.
+    /// Returns whether the torque ends or has ended in StopMode::limp: the brakes had time to close.
     bool limp() const noexcept;
     /// Returns whether the loop is finished: it has stopped, the requested brakes had `brake_ticks` to close,
-    /// and one of these holds: a stop was requested (also after the loop stopped by itself), it is limp, or
-    /// no positions have arrived for `give_up_s`.
+    /// the command is zero, and one of these holds: a stop was requested (also after the loop stopped by
+    /// itself), it is limp, or no positions have arrived for `give_up_s`.
     bool done() const noexcept;
     /// Returns whether the loop ends without a further request once the brakes had time to close.
     bool ends_itself() const noexcept { return told_ || config_.safe_stop.mode == StopMode::limp; }
@@ -135,6 +138,8 @@ class ControlLoop {
     /// Reference minus position, measured at the last tick or extrapolated, rad, at the time of the
     /// measurement.
     const JointVector& error() const noexcept { return error_; }
+    /// Observer's bandwidth, rad/s per joint; empty or 0: no observer.
+    const JointVector& bandwidth() const noexcept { return config_.bandwidth; }
     /// Share of each joint's observer bandwidth that vibrations left, 1/256 … 1.
     JointVector bandwidth_share() const { return joint_vector(observer_.share()); }
     const LoopCounters& counters() const noexcept { return counters_; }
@@ -145,6 +150,12 @@ class ControlLoop {
 
   private:
     using Observer = DisturbanceObserver<double, dynamic>;
+
+    /// The command of a tick.
+    struct Sent {
+        JointVector torque; ///< N·m
+        bool full = false;  ///< it equals the torque of the motion: neither limited nor without positions
+    };
 
     /// A sample of a future tick.
     struct EarlySample {
@@ -177,14 +188,16 @@ class ControlLoop {
     /// Passes this tick's sample to the learner, at its own time.
     void learn();
     /// Returns the command in effect at the time of the measurement of `ago` ticks before this tick's. Null
-    /// before the first one, and if the command was limited or resulted from missing positions.
-    const JointVector* command_then(int ago) const noexcept;
+    /// before the first one.
+    const Sent* command_then(int ago) const noexcept;
     void hold();
     JointVector holding_torque();
     void begin_braking(Eigen::Index joint);
     void brake();
     void request_brakes();
     bool brakes_closed() const noexcept;
+    /// Returns whether the torque goes to zero for good: the brakes have closed and the loop ends.
+    bool releases() const noexcept;
     /// Limits the command. Returns whether it was beyond its limit.
     bool limit();
     /// Returns the reference at the time of the measurement of `ago` ticks before this tick.
@@ -200,10 +213,10 @@ class ControlLoop {
     SafeStop safe_stop_;
     PausableTask task_;
     std::vector<Reference> references_; ///< ring: from the oldest measurement in use to this tick
-    /// ring over the same ticks; empty: the command differs from the torque of the motion
-    std::vector<JointVector> commands_;
-    std::size_t tick_ = 0;      ///< number in the motion
-    std::int64_t start_ns_ = 0; ///< measurement time of its first tick, on the loop's grid
+    std::vector<Sent> commands_;        ///< ring over the same ticks
+    std::size_t tick_ = 0;              ///< number in the motion
+    std::int64_t learned_tick_ = -1;    ///< of the last sample that the learner received
+    std::int64_t start_ns_ = 0;         ///< measurement time of its first tick, on the loop's grid
     Observer observer_;
     JointVector zero_, error_, command_;
     JointVector excess_;          ///< part of the last command that the limits removed

@@ -22,7 +22,7 @@ bool opposed(StopCause cause, const std::optional<TakenAction>& stop) {
 
 void ControlLoop::hold() {
     request_brakes();
-    command_ = slowly(limp() ? zero_ : holding_torque());
+    command_ = slowly(releases() ? zero_ : holding_torque());
 }
 
 void ControlLoop::begin_braking(Eigen::Index joint) {
@@ -107,10 +107,14 @@ bool ControlLoop::limp() const noexcept {
     return config_.safe_stop.mode == StopMode::limp && state() == LoopState::stopped && brakes_closed();
 }
 
-bool ControlLoop::done() const noexcept {
+bool ControlLoop::releases() const noexcept {
     const double silent_s = config_.period_s * static_cast<double>(counters_.ticks - position_tick_);
     const bool over = told_ || limp() || silent_s >= give_up_s;
-    return state() == LoopState::stopped && (!moved() || (brakes_closed() && over));
+    return state() == LoopState::stopped && brakes_closed() && over;
+}
+
+bool ControlLoop::done() const noexcept {
+    return state() == LoopState::stopped && (!moved() || (releases() && command_.isZero(0)));
 }
 
 } // namespace dfdyn::tools

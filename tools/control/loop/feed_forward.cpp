@@ -94,8 +94,10 @@ void FeedForward::commanded(const JointVector& torque) {
     }
 }
 
-void FeedForward::measured(std::int64_t time_ns, const JointVector* position, const JointVector* torque) {
+void FeedForward::measured(std::int64_t time_ns, const JointVector* position, const JointVector* torque,
+                           bool may_learn) {
     if (core_) {
+        learned_->may_learn(may_learn);
         core_->measured(time_ns, position != nullptr ? position->data() : nullptr,
                         torque != nullptr ? torque->data() : nullptr);
     }

@@ -45,9 +45,10 @@ class FeedForward {
     /// Registers the command (N·m) of this tick; after `update`.
     void commanded(const JointVector& torque);
 
-    /// Registers the newest measured position and the torque in effect at its time; null if unknown. Once per
-    /// tick.
-    void measured(std::int64_t time_ns, const JointVector* position, const JointVector* torque);
+    /// Registers the newest measured position and the torque in effect at its time; null if unknown. With
+    /// `may_learn` false the sample is compared with the model but not learned. Once per tick.
+    void measured(std::int64_t time_ns, const JointVector* position, const JointVector* torque,
+                  bool may_learn);
 
     /// Diagonal of the nominal mass matrix at the last knot's position, kg·m².
     const JointVector& inertia() const noexcept { return inertia_; }

@@ -116,12 +116,12 @@ void LearnedFeedForward::begin(std::int64_t time_ns, const double* position) {
 void LearnedFeedForward::learn(std::int64_t time_ns, const double* position, const double* torque) {
     const std::span<const double> output = torque != nullptr ? of_joints(torque) : std::span<const double>();
     const MeasuredSample sample{time_ns, of_joints(position), {}, {}, output};
-    const Status status = learners_.front().learn(sample);
+    const Status status = learners_.front().learn(sample, may_learn_);
     const bool touched = contact_joint() >= 0;
     for (Learner& physics : std::span(learners_).subspan(1)) { // does not learn a contact, either
-        physics.learn(touched ? MeasuredSample{time_ns, of_joints(position), {}, {}, {}} : sample);
+        physics.learn(sample, may_learn_ && !touched);
     }
-    counters_.samples += torque != nullptr ? 1 : 0;
+    counters_.samples += torque != nullptr && may_learn_ ? 1 : 0;
     if (learns(status)) {
         ++counters_.learned;
     } else if (is_fault(status.reason())) {
@@ -144,9 +144,11 @@ void LearnedFeedForward::go_on() {
     }
 }
 
-Status LearnedFeedForward::Learner::learn(const MeasuredSample& sample) {
-    const Status status = estimator->tick(sample, share).status;
-    if (learns(status)) {
+Status LearnedFeedForward::Learner::learn(const MeasuredSample& sample, bool may_learn) {
+    const Status status = estimator->tick(sample, may_learn ? share : Budget::predict_only()).status;
+    if (!may_learn) {
+        go_on(); // the sample before
+    } else if (learns(status)) {
         in_progress = true;
         take_over();
     }

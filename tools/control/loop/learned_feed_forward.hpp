@@ -68,6 +68,9 @@ class LearnedFeedForward {
     /// long time; `time_ns`: the present time.
     void begin(std::int64_t time_ns, const double* position);
 
+    /// Sets whether `learn` may learn the next samples, or only compares them with the model: for contacts
+    /// and findings.
+    void may_learn(bool may) noexcept { may_learn_ = may; }
     /// Begins to learn the measurement at one time; `torque`: null if only the position was measured.
     void learn(std::int64_t time_ns, const double* position, const double* torque);
 
@@ -115,7 +118,7 @@ class LearnedFeedForward {
 
         Learner(std::unique_ptr<RuntimeEstimator> learning, std::unique_ptr<RuntimeEstimator> following,
                 int ticks);
-        Status learn(const MeasuredSample& sample);
+        Status learn(const MeasuredSample& sample, bool may_learn);
         void go_on();
         void take_over();
     };
@@ -134,6 +137,7 @@ class LearnedFeedForward {
     std::vector<Learner> learners_;         ///< of the model, then of the physics alone, one per memory
     MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is monitored
     ContactEstimator* contacts_ = nullptr;  ///< the learner, if contacts are detected
+    bool may_learn_ = true;
     std::int64_t begin_ns_ = 0;
     std::vector<float> prediction_;
     int rest_lag_ = 0; ///< samples already added to the window by `rest`

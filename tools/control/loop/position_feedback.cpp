@@ -24,6 +24,7 @@ PositionFeedback::PositionFeedback(FeedbackGains gains, const DerivativeModel& f
     newest_tick_.assign(count, std::numeric_limits<std::int32_t>::min());
     observed_tick_ = newest_tick_;
     regular_.resize(count);
+    believed_.resize(count);
     restart_.resize(count);
     newest_ = velocity_ = reading_error_ = reading_rate_ = smallest_step_ = JointVector::Zero(joints);
 }
@@ -123,6 +124,7 @@ void PositionFeedback::observe(int ticks_ago, const JointVector& position, const
         const bool next = held_[j] == 0 || tick == newest_tick_[j] + 1;
         const bool believed = plausible(joint, tick, position[joint], reference);
         regular_[j] = next && believed;
+        believed_[j] = believed;
         if (!believed) {
             restart(joint);
         }
@@ -188,6 +190,16 @@ JointVector PositionFeedback::torque() const {
 int PositionFeedback::longest_silence() const noexcept {
     constexpr std::int64_t most = std::numeric_limits<int>::max();
     return static_cast<int>(std::min(tick_ - std::ranges::min(observed_tick_), most));
+}
+
+std::optional<Eigen::Index> PositionFeedback::silent_joint() const noexcept {
+    const auto [oldest, newest] = std::ranges::minmax_element(observed_tick_);
+    return *oldest < *newest ? std::optional(oldest - observed_tick_.begin()) : std::nullopt;
+}
+
+bool PositionFeedback::known() const noexcept {
+    return longest_silence() <= bridged_ticks &&
+           std::ranges::all_of(believed_, [](bool believed) { return believed; });
 }
 
 bool PositionFeedback::complete() const noexcept { return longest_silence() == 0; }

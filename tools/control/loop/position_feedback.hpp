@@ -41,6 +41,7 @@ struct MotionBounds {
 class PositionFeedback {
   public:
     static constexpr int fade_ticks = 10;
+    static constexpr int bridged_ticks = 2;
 
     PositionFeedback(FeedbackGains gains, const DerivativeModel& filter, double period_s,
                      MotionBounds bounds = {});
@@ -86,6 +87,11 @@ class PositionFeedback {
     }
     /// Returns the ticks since the last reading of the joint that has waited longest.
     int longest_silence() const noexcept;
+    /// Returns that joint; none if no other joint has a newer reading.
+    std::optional<Eigen::Index> silent_joint() const noexcept;
+    /// Returns whether the motion at this tick is known: every joint's last reading is within the bounds and
+    /// at most `bridged_ticks` old.
+    bool known() const noexcept;
     /// Returns whether every joint has a reading of this tick.
     bool complete() const noexcept;
     /// Returns whether the tick is complete, each reading follows its joint's previous one by one tick, and
@@ -131,6 +137,7 @@ class PositionFeedback {
     std::vector<std::int64_t> newest_tick_;   ///< of the last reading, per joint
     std::vector<std::int64_t> observed_tick_; ///< tick in which it was added
     std::vector<bool> regular_;               ///< whether the last reading directly followed the previous one
+    std::vector<bool> believed_;              ///< whether the last reading was within the bounds
     std::vector<Restart> restart_;            ///< last one of each joint's window
     JointVector newest_, position_, velocity_; ///< at the last readings
     JointVector smallest_step_;

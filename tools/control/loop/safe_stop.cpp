@@ -71,6 +71,7 @@ StopCause SafeStop::judge(const TickHealth& health, const JointVector& error) {
         return StopCause::bus_lost;
     }
     if (lost_ > config_.position_patience || returning_ > config_.return_patience) {
+        joint_ = health.silent_joint;
         return StopCause::no_position;
     }
     if (missed_ > config_.deadline_patience) {

@@ -76,6 +76,8 @@ struct TickHealth {
     /// ticks in which different joints lack a reading.
     int longest_silence = std::numeric_limits<int>::max();
     Eigen::Index joint_number = 0; ///< from 0, of the joint with abnormal behaviour
+    std::optional<Eigen::Index> silent_joint =
+        {}; ///< from 0, that has waited longest; none: all are equally old
 };
 
 /// State machine for a safe stop. The first cause is kept. A stopped loop cannot be restarted.
@@ -88,7 +90,8 @@ class SafeStop {
 
     LoopState state() const noexcept { return state_; }
     StopCause cause() const noexcept { return cause_; }
-    /// Joint (from 0) that caused following_error, overspeed, torque_limit or frozen_encoder.
+    /// Joint (from 0) that caused following_error, overspeed, torque_limit or frozen_encoder, or that alone
+    /// caused no_position.
     std::optional<Eigen::Index> joint() const noexcept { return joint_; }
 
   private:

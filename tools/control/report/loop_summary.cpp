@@ -35,10 +35,12 @@ void print_actions(std::ostream& out, const std::vector<TakenAction>& actions) {
     }
 }
 
-void print_vibrations(std::ostream& out, const JointVector& share) {
-    for (Eigen::Index joint = 0; joint < share.size(); ++joint) {
+void print_vibrations(std::ostream& out, const ControlLoop& loop) {
+    const JointVector share = loop.bandwidth_share();
+    for (Eigen::Index joint = 0; joint < loop.bandwidth().size(); ++joint) {
         if (share[joint] < 1) {
             out << "vibration: joint " << joint + 1 << " lowered the observer's bandwidth to "
+                << formatted("%.3g", share[joint] * loop.bandwidth()[joint]) << " rad/s, "
                 << formatted("%.3g", share[joint]) << " of --observer-bandwidth\n";
         }
     }
@@ -63,7 +65,7 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
         print_learning(out, *learned);
     }
-    print_vibrations(out, loop.bandwidth_share());
+    print_vibrations(out, loop);
     print_actions(out, loop.actions());
 }
 

@@ -49,7 +49,7 @@ void run(FeedForward& forward, int& tick, int ticks, double needed) {
         const Reference reference = reference_at(tick);
         forward.update(reference);
         forward.commanded(command);
-        forward.measured(tick * period_ns, &reference.position, &command);
+        forward.measured(tick * period_ns, &reference.position, &command, true);
     }
 }
 

@@ -155,6 +155,22 @@ TEST_CASE("a sample without torque is not learned but its position enters the wi
     CHECK(feed_forward.counters().samples == 150);
 }
 
+TEST_CASE("samples that may not be learned change nothing that was learned and enter the window") {
+    DFDYN_SEEDED_ENGINE(engine);
+    LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
+    feed_forward.begin(0, position(0).data());
+    learn(feed_forward, 1, 100, 8);
+    const std::vector<std::byte> before = feed_forward.snapshot();
+    feed_forward.may_learn(false);
+    learn(feed_forward, 101, 3, 8);
+    CHECK(feed_forward.snapshot() == before);
+    CHECK(feed_forward.counters().samples == 100);
+    feed_forward.may_learn(true);
+    const std::uint64_t learned = feed_forward.counters().learned;
+    learn(feed_forward, 104, 1, 8);
+    CHECK(feed_forward.counters().learned == learned + 1);
+}
+
 TEST_CASE("the forecast of the physics alone follows a change of the arm before the whole model's") {
     DFDYN_SEEDED_ENGINE(engine);
     LearnedFeedForward feed_forward(physics_model(engine), true, 2, 4, "model");

@@ -4,6 +4,7 @@
 #include "tests/support/catch.hpp"
 
 #include <cmath>
+#include <vector>
 
 namespace position_feedback_test {
 
@@ -50,6 +51,36 @@ TEST_CASE("the velocity after lost readings is the average over the gap") {
     loop.observe(0, position(24), reference(24));
     CHECK(loop.velocity()[0] == Approx(speed));
     CHECK(loop.regular());
+}
+
+TEST_CASE("the silent joint is the one without the readings that others have") {
+    PositionFeedback loop = after(20);
+    CHECK_FALSE(loop.silent_joint().has_value());
+    const std::vector<bool> second{false, true};
+    for (int tick = 20; tick < 25; ++tick) {
+        loop.advance();
+        loop.observe(0, position(tick), reference(tick), &second);
+        CHECK(loop.silent_joint() == 1);
+    }
+    for (int tick = 25; tick < 30; ++tick) {
+        loop.advance(); // the other one falls silent, too
+        CHECK(loop.silent_joint() == 1);
+    }
+}
+
+TEST_CASE("the motion is known over two lost readings and not beyond or after an impossible one") {
+    PositionFeedback loop = after(20);
+    CHECK(loop.known());
+    for (int tick = 20; tick < 23; ++tick) {
+        loop.advance();
+        CHECK(loop.known() == (tick < 22));
+    }
+    loop.advance();
+    loop.observe(0, position(23), reference(23));
+    CHECK(loop.known());
+    loop.advance();
+    loop.observe(0, position(24).array() + 0.1, reference(24));
+    CHECK_FALSE(loop.known());
 }
 
 TEST_CASE("a noise bound of half an encoder's count, or of none, causes no peaks of the velocity") {

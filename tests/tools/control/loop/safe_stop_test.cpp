@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -99,6 +100,21 @@ TEST_CASE("the joint of a stop is known if a joint caused it") {
                   no_error);
         CHECK(stop.cause() == cause);
         CHECK(stop.joint().value_or(-1) == (known ? 1 : -1));
+    }
+}
+
+TEST_CASE("lost positions name the joint that is silent alone") {
+    for (const std::optional<Eigen::Index> silent : {std::optional<Eigen::Index>(1), {}}) {
+        SafeStop stop = running();
+        for (int tick = 0; tick < 10; ++tick) {
+            stop.tick(health([&](TickHealth& h) {
+                          h.position_valid = false;
+                          h.silent_joint = silent;
+                      }),
+                      no_error);
+        }
+        CHECK(stop.cause() == StopCause::no_position);
+        CHECK(stop.joint() == silent);
     }
 }
 
