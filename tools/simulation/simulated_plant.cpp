@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/simulation/simulated_plant.hpp"
 
-#include "tools/base/text/error.hpp"
-#include "tools/base/text/number.hpp"
+#include "tools/simulation/arm/joint_limits.hpp"
 
 #include <cmath>
 
@@ -44,12 +43,7 @@ void SimulatedPlant::advance_to(double time_s) {
         ++step_;
         observe();
     }
-    constexpr double runaway = 1e4; // rad/s
-    if (!arm_.state().position.allFinite() || arm_.state().velocity.cwiseAbs().maxCoeff() > runaway) {
-        throw InputError("t = " + number_text(time_s) +
-                         " s: expected a stable simulation, found a diverging one: check gains, "
-                         "friction and integration_rate_hz");
-    }
+    check_stable(arm_.state().position, arm_.state().velocity, time_s);
 }
 
 } // namespace dfdyn::tools

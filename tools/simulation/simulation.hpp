@@ -35,8 +35,8 @@ class Simulation {
     /// Throws InputError if the task is impossible: see make_task.
     Simulation(const Robot& robot, const Scenario& scenario);
 
-    /// Returns the next row. Throws InputError with the time if the reference exceeds the joints' limits or
-    /// the simulation diverges.
+    /// Returns the next row, at least one step of the integration after the previous one. Throws InputError
+    /// with the time if the reference exceeds the joints' limits or the simulation diverges.
     SimulatedSample next();
 
   private:

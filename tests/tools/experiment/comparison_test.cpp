@@ -98,6 +98,36 @@ TEST_CASE("a difference in only one subset does not hold") {
     CHECK(outcome.verdict == Verdict::undecided);
 }
 
+/// Cuts the given subset of both groups after 1 s, so that it has no steady state.
+void shorten(std::vector<JobResult>& jobs, std::size_t subset) {
+    for (JobResult& job : jobs) {
+        for (auto& group : job.error) {
+            group[subset].resize(10);
+        }
+    }
+}
+
+TEST_CASE("a subset without ticks of the phase is left out of the comparison") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Plan plan = two_case_plan(10);
+    std::vector<JobResult> jobs = units_with(0.6, 10, engine);
+    shorten(jobs, 0);
+    shorten(jobs, 2);
+    const ComparisonOutcome outcome = compare(a_is_less, plan, jobs);
+    CHECK(outcome.draws == 10);
+    CHECK(outcome.median_ratio == Approx(0.6).epsilon(0.1));
+    CHECK(outcome.subsets == 1);
+    CHECK(outcome.subsets_agree == 1);
+    CHECK(outcome.verdict == Verdict::holds);
+    CHECK(compare({"A", "B", "force", Phase::transient, 0}, plan, jobs).subsets == 3);
+    shorten(jobs, 1);
+    const ComparisonOutcome nothing = compare(a_is_less, plan, jobs);
+    CHECK(nothing.draws == 0);
+    CHECK(nothing.subsets == 0);
+    CHECK(std::isnan(nothing.median_ratio));
+    CHECK(nothing.verdict == Verdict::undecided);
+}
+
 TEST_CASE("a case that loses ticks loses the draw") {
     DFDYN_SEEDED_ENGINE(engine);
     const Plan plan = two_case_plan(10);

@@ -74,6 +74,18 @@ TEST_CASE("an evaluation writes page and tables and findings and figures and pic
     }
 }
 
+TEST_CASE("the verdicts have a heading for reasons only if there is a reason") {
+    const TemporaryDirectory directory;
+    Evaluation one = evaluation();
+    write(directory, one);
+    const std::string heading = "Why not all are reproduced";
+    CHECK_THAT(file_content(directory.path() / "verdicts.md"), ContainsSubstring(heading));
+    one.plan.findings.pop_back(); // the other one is reproduced
+    write(directory, one);
+    CHECK_THAT(file_content(directory.path() / "verdicts.md"), !ContainsSubstring(heading));
+    CHECK_THAT(file_content(directory.path() / "verdicts.md"), ContainsSubstring("A wins"));
+}
+
 TEST_CASE("the page of an evaluation needs no network") {
     const TemporaryDirectory directory;
     write(directory, evaluation());

@@ -153,6 +153,13 @@ TEST_CASE("an error in a plan is reported with its field") {
          "seeds: expected at least one, each once"},
         {[](json& j) { j["groups"][1]["name"] = "first"; }, "groups: expected names that are there once"},
         {[](json& j) {
+             j["groups"][1]["outputs"] = {"tau1", "tau2", "tau1"};
+         },
+         "groups[1].outputs: expected names that are there once, found \"tau1\" twice"},
+        {[](json& j) { j["tests"][0]["rows"] = 9; },
+         "tests[0].rows: expected more than 9, the horizon and the largest lags of a case together, found 9"},
+        {[](json& j) { j["horizon"] = 100; }, "tests[0].rows: expected more than 104"},
+        {[](json& j) {
              j["cases"][0]["input"] = {"DF", "DFX"};
          },
          "cases[0].input: expected one of STD"},
@@ -188,6 +195,11 @@ TEST_CASE("an error in a plan is reported with its field") {
          },
          "cases: \"c\": combine: expected names of cases that are no combinations, found \"no\""},
         {[](json& j) {
+             j["cases"].push_back({{"combine", {"NP-ML-STD", "NP-ML-DFR"}}, {"name", "paper"}});
+         },
+         "cases[1].name: expected another name than that of the set of all cases without a suffix, found "
+         "\"paper\""},
+        {[](json& j) {
              j["cases"].push_back({{"combine", {"NP-ML-STD"}}, {"name", "c"}, {"lags", 3}});
          },
          "lags"},
@@ -219,40 +231,18 @@ TEST_CASE("a missing plan or one that is not JSON is an error of one line") {
                       ContainsSubstring("plan.json: byte"));
 }
 
-TEST_CASE("the recordings of a plan are cut as configured") {
-    const TemporaryDirectory directory;
-    const Plan plan = read_plan(dfdyn::tests::write_small_experiment(directory));
-    const PlanData data = load_plan_data(plan);
-    CHECK(data.start.row_count() == 150);
-    CHECK(data.online.row_count() == 150);
-    CHECK(data.online.time_s.front() == Approx(7.5));
-    REQUIRE(data.subsets.size() == 2);
-    CHECK(data.subsets[1].row_count() == 100);
-    CHECK(data.subsets[1].time_s.front() == Approx(5));
-    CHECK(data.group_outputs == std::vector<std::vector<std::size_t>>{{0}, {0, 1}});
-    double mean = 0;
-    double square = 0;
-    for (const Recording& subset : data.subsets) {
-        for (std::size_t row = 0; row < 100; ++row) {
-            mean += subset.output.row(row)[1] / 200;
-            square += subset.output.row(row)[1] * subset.output.row(row)[1] / 200;
-        }
-    }
-    CHECK(data.output_variance[1] == Approx(square - mean * mean));
-}
-
-TEST_CASE("recordings without the rows or columns of the plan are rejected") {
+TEST_CASE("rows of the training cannot be test rows of the same log") {
     const TemporaryDirectory directory;
     json content = small_plan();
-    content["tests"][0]["count"] = 3;
-    const Plan too_long = read_plan(dfdyn::tests::write_small_experiment(directory, content));
-    CHECK_THROWS_WITH(load_plan_data(too_long),
-                      ContainsSubstring("expected at least 300 rows in the recording, found 220"));
-    content = small_plan();
-    content["groups"][1]["outputs"] = {"tau1", "tau3"};
-    const Plan unknown = read_plan(dfdyn::tests::write_small_experiment(directory, content));
-    CHECK_THROWS_WITH(load_plan_data(unknown),
-                      ContainsSubstring("group \"both\": expected outputs among tau1, tau2, found \"tau3\""));
+    const auto plan = [&] { return read_plan(dfdyn::tests::write_small_experiment(directory, content)); };
+    content["tests"][0]["log"] = "./train.csv"; // another path of the same file
+    CHECK_THROWS_WITH(plan(), ContainsSubstring("plan.json: tests[0].log: expected a log other than the "
+                                                "training's, of which training uses all rows"));
+    content["training"]["rows"] = 200;
+    content["tests"][0] = {{"log", "./train.csv"}, {"first", 199}, {"rows", 50}};
+    CHECK_THROWS_WITH(plan(), ContainsSubstring("plan.json: tests[0].first: expected a row from 200 on"));
+    content["tests"][0]["first"] = 200;
+    CHECK(load_plan_data(plan()).subsets.front().time_s.front() == Approx(10));
 }
 
 TEST_CASE("a quick plan has the same cases and claims with less effort") {
@@ -269,7 +259,7 @@ TEST_CASE("a quick plan has the same cases and claims with less effort") {
     CHECK(quick.comparisons.size() == plan.comparisons.size());
     CHECK(quick.seeds == std::vector<std::uint64_t>{1});
     CHECK(quick.start_rows == 400);
-    CHECK(quick.training_rows == 800);
+    CHECK(quick.most_online_rows == 400);
     CHECK(quick.tests.front().rows == 400);
     CHECK(quick.cases.front().feature_count == 30);
     CHECK(quick.cases.front().starts == 1);

@@ -11,11 +11,11 @@
 
 namespace dfdyn::tests {
 
-/// A recording of two joints every 50 ms, whose torques depend on the present and the past motion.
-inline std::string small_recording(int rows, double speed) {
+/// A recording of two joints every `period_s`, whose torques depend on the present and the past motion.
+inline std::string small_recording(int rows, double speed, double period_s = 0.05) {
     std::string text = "t,q1,q2,tau1,tau2\n";
     for (int row = 0; row < rows; ++row) {
-        const double t = 0.05 * row;
+        const double t = period_s * row;
         const double q1 = std::sin(speed * t) + 0.3 * std::sin(2.7 * speed * t);
         const double q2 = std::cos(1.3 * speed * t);
         const double v1 = speed * std::cos(speed * t);

@@ -63,6 +63,26 @@ TEST_CASE("a recording has the scenario's rate and jitter and the truth has no s
     CHECK(std::sqrt(stamps) == Approx(2e-4).epsilon(0.04));
 }
 
+TEST_CASE("the times of a recording increase even if jitter and integration step are near its period") {
+    Scenario scenario = quiet_scenario(1);
+    scenario.integration_rate_hz = 1000;
+    scenario.recording.rate_hz = 900;
+    scenario.recording.instant_jitter_s = 5e-5;
+    scenario.recording.stamp_jitter_s = 5e-5;
+    Simulation simulation(pendulum(1, 0.5), scenario);
+    constexpr int samples = 6000;
+    double past = -1;
+    double true_past_s = -1;
+    for (int i = 0; i < samples; ++i) {
+        const SimulatedSample sample = simulation.next();
+        REQUIRE(sample.time_s > past);
+        REQUIRE(sample.truth.time_s > true_past_s);
+        past = sample.time_s;
+        true_past_s = sample.truth.time_s;
+    }
+    CHECK(past == Approx((samples - 1) / 900.0).margin(1.5e-3)); // the rate is kept
+}
+
 TEST_CASE("perfect sensors measure the true values and the torque is inverse dynamics plus friction") {
     Scenario scenario = quiet_scenario(1);
     scenario.actuators.friction[0] = {500, 1, 0.2, 0.4, 0.6, 0.05};

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <system_error>
 
 namespace dfdyn::tools {
 
@@ -51,6 +52,7 @@ class PlanReader {
         read_protocol();
         read_groups();
         read_cases();
+        check_subsets();
         read_claims(json_, plan_);
         return std::move(plan_);
     }
@@ -83,6 +85,7 @@ class PlanReader {
         }
         for (const JsonReader& test : json_.objects("tests", 1, most_entries)) {
             plan_.tests.push_back(test_log(test));
+            check_unseen(test, plan_.tests.back());
         }
         plan_.horizon = json_.has("horizon") ? count_of(json_, "horizon", 1) : plan_.horizon;
         if (json_.has("steady_after_s")) {
@@ -128,6 +131,41 @@ class PlanReader {
                 count_of(test, "rows", 2), test.has("count") ? count_of(test, "count", 1) : 1};
     }
 
+    /// Refuses rows that are training data: errors on them say nothing about other motions.
+    void check_unseen(const JsonReader& reader, const TestLog& test) const {
+        std::error_code missing; // reported when the file is read
+        if (!fs::equivalent(test.log, plan_.training_log, missing)) {
+            return;
+        }
+        if (!plan_.training_rows) {
+            throw reader.error("log", "a log other than the training's, of which training uses all rows",
+                               in_quotes(reader.text("log")));
+        }
+        if (test.first < *plan_.training_rows) {
+            throw reader.error("first",
+                               "a row from " + std::to_string(*plan_.training_rows) +
+                                   " on, after the training's rows of the same log",
+                               std::to_string(test.first));
+        }
+    }
+
+    /// Refuses subsets in which no tick has both a full window of every case and a whole horizon.
+    void check_subsets() const {
+        int lags = 0;
+        for (const Case& one : plan_.cases) {
+            lags = std::max(lags, one.lags);
+        }
+        const std::size_t unscored = plan_.horizon + static_cast<std::size_t>(lags);
+        for (std::size_t test = 0; test < plan_.tests.size(); ++test) {
+            if (plan_.tests[test].rows <= unscored) {
+                throw json_.error("tests[" + std::to_string(test) + "].rows",
+                                  "more than " + std::to_string(unscored) +
+                                      ", the horizon and the largest lags of a case together",
+                                  std::to_string(plan_.tests[test].rows));
+            }
+        }
+    }
+
     ErrorScale error_scale() const {
         const std::string text = text_or(json_, "error_scale", "horizon");
         for (const ErrorScale scale : {ErrorScale::horizon, ErrorScale::variance}) {
@@ -156,10 +194,20 @@ class PlanReader {
         }
     }
 
+    static std::vector<std::string> outputs_of(const JsonReader& group) {
+        std::vector<std::string> outputs = group.texts("outputs", most_in_list);
+        for (const std::string& output : outputs) {
+            if (std::ranges::count(outputs, output) > 1) {
+                throw group.error("outputs", "names that are there once", in_quotes(output) + " twice");
+            }
+        }
+        return outputs;
+    }
+
     void read_groups() {
         for (const JsonReader& group : json_.objects("groups", 1, most_entries)) {
             group.allow_only(group_names);
-            plan_.groups.push_back({plain_name(group, "name"), group.texts("outputs", most_in_list)});
+            plan_.groups.push_back({plain_name(group, "name"), outputs_of(group)});
             refuse_twice(json_, "groups", plan_.groups);
         }
     }
@@ -226,7 +274,7 @@ Plan quick_plan(Plan plan) {
     constexpr std::size_t most_rows_used = 400;
     plan.seeds.resize(1);
     plan.start_rows = std::min(plan.start_rows, most_rows_used);
-    plan.training_rows = std::min(plan.training_rows.value_or(most_rows), plan.start_rows + most_rows_used);
+    plan.most_online_rows = most_rows_used;
     plan.tests.resize(1);
     plan.tests.front().rows = std::min(plan.tests.front().rows, most_rows_used);
     plan.tests.front().count = 1;

@@ -94,7 +94,8 @@ struct Plan {
     std::filesystem::path training_log;
     /// first rows of training_log: for hyperparameters and the initial state
     std::size_t start_rows = 1000;
-    std::optional<std::size_t> training_rows; ///< rows of training_log in use; empty: all
+    std::optional<std::size_t> training_rows;    ///< rows of training_log in use; empty: all
+    std::optional<std::size_t> most_online_rows; ///< of the rows behind the first ones; empty: all
     std::vector<TestLog> tests;
     std::size_t horizon = 25;   ///< T
     double steady_after_s = 30; ///< since the beginning of the subset
@@ -112,14 +113,15 @@ std::string to_string(ErrorScale scale);
 
 /// Reads a plan. Missing fields are taken from the plan named as "like"; relative paths refer to the plan's
 /// folder. Throws InputError with the path of the field for anything missing, unknown, out of range or
-/// duplicate.
+/// duplicate, for test rows that are also training rows, and for subsets without a tick that can be scored.
 Plan read_plan(const std::filesystem::path& path);
 
 /// Returns the case with this name, which must exist.
 const Case& case_named(const Plan& plan, const std::string& name);
 
 /// Returns the plan with one draw and few features, rows and starts: a functional test of all cases in
-/// seconds, without meaningful accuracy.
+/// seconds, without meaningful accuracy. A plan that does not limit its training rows still learns online
+/// from the whole training log.
 Plan quick_plan(Plan plan);
 
 } // namespace dfdyn::tools

@@ -105,6 +105,10 @@ Case combination_of(const JsonReader& entry) {
     entry.allow_only(combination_names);
     Case one;
     one.name = one.suffix = plain_name(entry, "name");
+    if (one.name == set_of_the_paper) { // no comparison could refer to it
+        throw entry.error("name", "another name than that of the set of all cases without a suffix",
+                          in_quotes(one.name));
+    }
     one.members = names_in(entry, "combine");
     one.lags = 0; // the members have their own windows
     return one;

@@ -9,8 +9,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::string_view set_of_the_paper = "paper"; ///< in a comparison: all cases without a suffix
-
 constexpr std::array<std::string_view, 2> figure_names{"title", "cases"};
 constexpr std::array<std::string_view, 5> comparison_names{"better", "worse", "group", "phase", "gain"};
 constexpr std::array<std::string_view, 4> finding_names{"name", "statement", "if_not", "comparisons"};

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/experiment/plan/plan_data.hpp"
 
+#include "tools/base/recording/row_parts.hpp"
+#include "tools/base/recording/sample_grid.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/experiment/plan/file_checksum.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -28,6 +32,27 @@ void read_subsets(const Plan& plan, std::size_t joints, PlanData& data) {
             const std::size_t first = test.first + subset * test.rows;
             data.subsets.push_back(read_rows(test.log, plan, joints, {first, first + test.rows}));
         }
+    }
+}
+
+/// Refuses a recording with another sample period than the start's: every model would take faster rows for
+/// its own samples, and slower ones for gaps.
+void check_period(const Recording& recording, double period_s, const Plan& plan) {
+    const std::string model = "plan " + in_quotes(plan.name);
+    check_not_faster(recording, period_s, model);
+    const double own_s = recording.row_count() > 1 ? sample_period_s({&recording, 1}) : period_s;
+    if (own_s > (1 + followed_deviation) * period_s) {
+        throw InputError(recording.source + ": expected a row every " + rounded_text(period_s) +
+                         " s, as in the training of " + model + ", found one every " + rounded_text(own_s) +
+                         " s");
+    }
+}
+
+void check_periods(const Plan& plan, const PlanData& data) {
+    const double period_s = sample_period_s({&data.start, 1});
+    check_period(data.online, period_s, plan);
+    for (const Recording& subset : data.subsets) {
+        check_period(subset, period_s, plan);
     }
 }
 
@@ -66,7 +91,11 @@ PlanData load_plan_data(const Plan& plan) {
     data.start = read_rows(plan.training_log, plan, 0, {0, plan.start_rows});
     const std::size_t joints = data.start.joint_count();
     data.online = read_rows(plan.training_log, plan, joints, {plan.start_rows, plan.training_rows});
+    if (plan.most_online_rows && *plan.most_online_rows < data.online.row_count()) {
+        data.online = rows_between(std::move(data.online), 0, *plan.most_online_rows);
+    }
     read_subsets(plan, joints, data);
+    check_periods(plan, data);
     const std::vector<std::string>& names = data.start.output.names;
     for (std::size_t output = 0; output < names.size(); ++output) {
         data.output_variance.push_back(variance_of(data.subsets, output));

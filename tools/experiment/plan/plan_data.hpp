@@ -22,7 +22,8 @@ struct PlanData {
 };
 
 /// Reads the recordings. Throws InputError as `read_recording` does, for a recording with fewer rows than the
-/// plan requires, and for missing outputs.
+/// plan requires, for missing outputs, and for rows whose sample period differs from the start's by more than
+/// `followed_deviation`.
 PlanData load_plan_data(const Plan& plan);
 
 } // namespace dfdyn::tools

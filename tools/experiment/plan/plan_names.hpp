@@ -7,12 +7,16 @@
 #include <algorithm>
 #include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dfdyn::tools {
 
 /// Largest number of entries of a list in a plan.
 inline constexpr int most_entries = 10000;
+
+/// In a comparison: all cases without a suffix, those of the paper.
+inline constexpr std::string_view set_of_the_paper = "paper";
 
 /// Reads a text that can be part of a file's name: letters, digits, '-' and '_'.
 std::string plain_name(const JsonReader& reader, const std::string& name);

@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -64,15 +66,20 @@ class PairErrors {
         return {error(*pair.better, subset), error(*pair.worse, subset)};
     }
 
-    /// Returns the sum over the subsets.
+    /// Returns the sum over the subsets that have errors in the phase; NaN if none has.
     ErrorPair of(const Pair& pair) const {
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
         ErrorPair sum;
+        bool any = false;
         for (std::size_t subset = 0; subset < subset_count(pair); ++subset) {
             const ErrorPair errors = in_subset(pair, subset);
-            sum.better += errors.better;
-            sum.worse += errors.worse;
+            if (errors.there()) {
+                sum.better += errors.better;
+                sum.worse += errors.worse;
+                any = true;
+            }
         }
-        return sum;
+        return any ? sum : ErrorPair{none, none};
     }
 
     std::size_t subset_count(const Pair& pair) const { return pair.better->error[group_].size(); }
@@ -129,9 +136,11 @@ ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::s
     outcome.lower_ratio = box.lower_quartile;
     outcome.median_ratio = box.median;
     outcome.upper_ratio = box.upper_quartile;
-    outcome.subsets = pairs.empty() ? 0 : errors.subset_count(pairs.front());
-    for (std::size_t subset = 0; subset < outcome.subsets; ++subset) {
-        outcome.subsets_agree += median(differences_in(pairs, errors, subset, threshold)) < 0 ? 1 : 0;
+    const std::size_t subsets = pairs.empty() ? 0 : errors.subset_count(pairs.front());
+    for (std::size_t subset = 0; subset < subsets; ++subset) {
+        std::vector<double> in_subset = differences_in(pairs, errors, subset, threshold);
+        outcome.subsets += in_subset.empty() ? 0 : 1;
+        outcome.subsets_agree += median(std::move(in_subset)) < 0 ? 1 : 0;
     }
     const SignedRankTest test = signed_rank_test(differences);
     outcome.p_holds = test.p_negative;

@@ -13,14 +13,16 @@ namespace dfdyn::tools {
 enum class Verdict { holds, contradicted, undecided };
 
 /// Result of a comparison. A draw's ratio is the error of `better` divided by the error of `worse`, for the
-/// same draw, averaged over the subsets (`phase_error` of each). An infinite error is larger than any other.
+/// same draw, averaged over the subsets that have errors in the phase (`phase_error` of each). An infinite
+/// error is larger than any other.
 struct ComparisonOutcome {
     Comparison comparison;
     std::size_t draws = 0;                                     ///< draws for which both cases have errors
     double lower_ratio = 0, median_ratio = 0, upper_ratio = 0; ///< quartiles; NaN without draws
     std::size_t draws_agree = 0;
-    std::size_t subsets = 0, subsets_agree = 0; ///< a subset agrees by its median ratio over the draws
-    double p_holds = 1;                         ///< p-value of the signed-rank test over the draws
+    /// subsets with errors in the phase; a subset agrees by its median ratio over the draws
+    std::size_t subsets = 0, subsets_agree = 0;
+    double p_holds = 1; ///< p-value of the signed-rank test over the draws
     double p_contradicted = 1;
     Verdict verdict = Verdict::undecided;
 };

@@ -192,7 +192,12 @@ class EvaluationPage {
                                              "): " + outcome.finding->if_not);
             }
         }
-        return {{"Findings", {rule_sentence()}, {}, {finding_table(findings_)}}, reasons};
+        std::vector<PageSection> sections;
+        sections.push_back({"Findings", {rule_sentence()}, {}, {finding_table(findings_)}});
+        if (!reasons.paragraphs.empty()) {
+            sections.push_back(reasons);
+        }
+        return sections;
     }
 
     std::vector<PageSection> finding_sections() const {

@@ -9,8 +9,8 @@
 
 namespace dfdyn::tools {
 
-/// Writes the results of an evaluation into `folder`: results.csv, tables.md, report.html, findings.md, and
-/// pictures/PLAN_FIGURE_GROUP_{curves,boxes}.svg. They appear together or not at all.
+/// Writes the results of an evaluation into `folder`: results.csv, tables.md, report.html, findings.md,
+/// verdicts.md, and pictures/PLAN_FIGURE_GROUP_{curves,boxes}.svg. They appear together or not at all.
 void write_evaluation(const std::filesystem::path& folder, const Plan& plan, const PlanData& data,
                       const EvaluationResults& results);
 

@@ -29,7 +29,8 @@ ReportTable cost_table(const Plan& plan, std::span<const JobResult> jobs);
 
 ReportTable comparison_table(const std::string& caption, std::span<const ComparisonOutcome> outcomes);
 
-/// Returns statement and verdict, one row per finding.
+/// Returns name, number of comparisons that hold, are contradicted and are undecided, and verdict; one row
+/// per finding.
 ReportTable finding_table(std::span<const FindingOutcome> findings);
 
 /// Writes one row per case, draw and group, then one per alternative method: see docs/guide/evaluation.md for

@@ -52,6 +52,7 @@ ordered_json cases_json(const Plan& plan, const Case& one) {
 ordered_json protocol_json(const Plan& plan) {
     ordered_json json{{"start_rows", plan.start_rows},
                       {"training_rows", plan.training_rows.value_or(0)},
+                      {"most_online_rows", plan.most_online_rows.value_or(0)},
                       {"horizon", plan.horizon},
                       {"error_scale", to_string(plan.error_scale)},
                       {"robot",

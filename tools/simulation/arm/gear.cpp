@@ -5,6 +5,14 @@
 
 namespace dfdyn::tools {
 
+Eigen::Index GearModel::coordinate_count(Eigen::Index joints) const {
+    Eigen::Index count = joints;
+    for (Eigen::Index joint = 0; joint < joints; ++joint) {
+        count += soft(joint) ? 1 : 0;
+    }
+    return count;
+}
+
 double GearModel::torque(Eigen::Index joint, double twist, double rate) const {
     const double half = gap[joint] / 2;
     const double pressed = twist - std::clamp(twist, -half, half);

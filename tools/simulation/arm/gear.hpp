@@ -14,6 +14,10 @@ struct GearModel {
 
     bool soft(Eigen::Index joint) const { return stiffness.size() > 0 && stiffness[joint] > 0; }
 
+    /// Returns the number of coordinates of an arm with `joints` joints: two for each soft joint (motor and
+    /// link), one for each rigid one.
+    Eigen::Index coordinate_count(Eigen::Index joints) const;
+
     /// Returns the torque of the motor on the link if the motor leads by `twist` (rad) and `twist` grows by
     /// `rate` (rad/s). Parts with backlash push but never pull.
     double torque(Eigen::Index joint, double twist, double rate) const;

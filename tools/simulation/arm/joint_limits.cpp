@@ -2,6 +2,7 @@
 #include "tools/simulation/arm/joint_limits.hpp"
 
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -38,6 +39,15 @@ void check_limits(const Robot& robot, const JointVector& position, const std::st
         if (joint.upper && position[i] > *joint.upper) {
             refuse(joint, position[i], *joint.upper, "upper", where);
         }
+    }
+}
+
+void check_stable(const JointVector& position, const JointVector& velocity, double time_s) {
+    constexpr double runaway = 1e4; // rad/s
+    if (!position.allFinite() || velocity.cwiseAbs().maxCoeff() > runaway) {
+        throw InputError("t = " + number_text(time_s) +
+                         " s: expected a stable simulation, found a diverging one: check gains, friction and "
+                         "integration_rate_hz");
     }
 }
 

@@ -3,12 +3,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dfdyn::tools {
 
 void LuGreFriction::set_conditions(double time_s, double load) noexcept {
     drifted_ = std::max(0.0, 1 + parameters_.drift_per_s * time_s);
     load_ = std::abs(load);
+}
+
+void LuGreFriction::set_factor(double factor) noexcept {
+    const bool smaller = factor < factor_;
+    factor_ = factor;
+    if (smaller && parameters_.stiffness > 0) {
+        // a deflection far above the level would make its rate, and with it the damping's torque, unbounded
+        constexpr double backwards = -std::numeric_limits<double>::min();
+        deflection_ = std::clamp(deflection_, -level(backwards) / parameters_.stiffness,
+                                 level(0) / parameters_.stiffness);
+    }
 }
 
 double LuGreFriction::level(double velocity) const noexcept {

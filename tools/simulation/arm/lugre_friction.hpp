@@ -34,8 +34,9 @@ class LuGreFriction {
     /// Sets the time and the torque that the joint's gear transmits.
     void set_conditions(double time_s, double load) noexcept;
 
-    /// Multiplies the levels and the viscous friction of the parameters by `factor`.
-    void set_factor(double factor) noexcept { factor_ = factor; }
+    /// Multiplies the levels and the viscous friction of the parameters by `factor`, from 0. With a smaller
+    /// factor than before, bristles beyond the new break-away level slip back to it at once.
+    void set_factor(double factor) noexcept;
 
     /// Returns the friction torque, which opposes the motion at `velocity`.
     double torque(double velocity) const noexcept;

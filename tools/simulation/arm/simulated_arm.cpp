@@ -48,16 +48,22 @@ Robot split(const Robot& robot, const ActuatorModel& actuators) {
     return result;
 }
 
-/// Returns the inertias of rotors that have inertia about their joint only. Other rotors are bodies.
+/// Returns the inertias, one per coordinate, of rotors that have inertia about their joint only. Other rotors
+/// are bodies. Throws InputError for more coordinates than a JointVector holds.
 JointVector rotors(const ActuatorModel& actuators) {
-    JointVector result(actuators.rotor_inertia.size());
-    Eigen::Index count = 0;
-    for (Eigen::Index i = 0; i < actuators.rotor_inertia.size(); ++i) {
+    const Eigen::Index joints = actuators.rotor_inertia.size();
+    const Eigen::Index coordinates = actuators.gear.coordinate_count(joints);
+    if (coordinates > largest_simulated_chain) {
+        throw InputError("actuators: expected at most " + std::to_string(largest_simulated_chain) +
+                         " joints, each soft one counted twice, found " + std::to_string(coordinates));
+    }
+    JointVector result = JointVector::Zero(coordinates);
+    for (Eigen::Index i = 0, coordinate = 0; i < joints; ++i) {
         if (actuators.gear.soft(i)) {
-            result.conservativeResize(result.size() + 1);
-            result[count++] = 0;
+            coordinate += 2;
+        } else {
+            result[coordinate++] = actuators.rotor_inertia[i];
         }
-        result[count++] = actuators.gear.soft(i) ? 0 : actuators.rotor_inertia[i];
     }
     return result;
 }

@@ -48,7 +48,8 @@ class SimulatedArm {
     };
 
     /// Starts at rest at `position`, with relaxed bristles and gears deflected by the weight. Throws
-    /// InputError as ArmDynamics does, and if a soft joint has no rotor or is prismatic.
+    /// InputError as ArmDynamics does, if a soft joint has no rotor or is prismatic, and for more than
+    /// `largest_simulated_chain` joints, each soft one counted twice.
     SimulatedArm(const Robot& robot, const ActuatorModel& actuators, const JointVector& position,
                  JointLoads loads = {});
 

@@ -1,26 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/simulation/faults/fault_kind.hpp"
 
-#include <string>
-
 namespace dfdyn::tools {
 
 namespace {
 
-Eigen::Vector3d vector(const JsonReader& reader, const std::string& name) {
-    const std::vector<double> values = reader.numbers(name, 3);
-    return Eigen::Map<const Eigen::Vector3d>(values.data());
-}
-
 Push read_push(const FaultReader& reader) {
     const JsonReader& json = reader.json();
     Push push;
-    push.force = vector(json, "force_n");
+    push.force = reader.three("force_n");
     if (json.has("link")) {
         push.link = json.whole_number("link", 1, reader.joint_count()) - 1;
     }
     if (json.has("point_m")) {
-        push.point = vector(json, "point_m");
+        push.point = reader.three("point_m");
         if (!push.link) {
             throw json.error("point_m", "the link that the point is on", "no link");
         }

@@ -6,11 +6,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-Eigen::Vector3d three(const JsonReader& reader, const std::string& name) {
-    const std::vector<double> values = reader.numbers(name, 3);
-    return Eigen::Map<const Eigen::Vector3d>(values.data());
-}
-
 LinkError read_link_error(const JsonReader& entry, int joint_count) {
     const ScenarioReader one(entry, joint_count);
     one.allow_only({"link", "delta_mass_kg", "delta_centre_m", "delta_inertia_kgm2"});
@@ -18,10 +13,10 @@ LinkError read_link_error(const JsonReader& entry, int joint_count) {
     error.joint = static_cast<std::size_t>(entry.whole_number("link", 1, joint_count) - 1);
     error.delta_mass = one.within("delta_mass_kg", -1e4, 1e4, 0);
     if (entry.has("delta_centre_m")) {
-        error.delta_centre = three(entry, "delta_centre_m");
+        error.delta_centre = one.three("delta_centre_m");
     }
     if (entry.has("delta_inertia_kgm2")) {
-        error.delta_inertia = three(entry, "delta_inertia_kgm2");
+        error.delta_inertia = one.three("delta_inertia_kgm2");
     }
     return error;
 }
@@ -39,7 +34,7 @@ Contact read_contact(const JsonReader& entry, int joint_count) {
         contact.joint = entry.whole_number("joint", 1, joint_count) - 1;
         contact.peak = entry.number("peak_nm");
     } else {
-        contact.force = three(entry, "force_n");
+        contact.force = one.three("force_n");
     }
     return contact;
 }
@@ -99,7 +94,7 @@ std::vector<Payload> read_payloads(const JsonReader& reader) {
         payload.attached_s = one.within("attached_s", 0, 1e6, 0);
         payload.removed_s = one.within("removed_s", payload.attached_s + 1e-3, 1e7, payload.removed_s);
         payload.mass = one.json().number_within("mass_kg", 1e-6, 1e4);
-        payload.centre = Eigen::Map<const Eigen::Vector3d>(one.json().numbers("centre_m", 3).data());
+        payload.centre = one.three("centre_m");
         if (!payloads.empty() && payload.attached_s < payloads.back().attached_s) {
             throw one.json().error("attached_s", "payloads in order of time",
                                    number_text(payload.attached_s));

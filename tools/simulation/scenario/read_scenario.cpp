@@ -21,6 +21,15 @@ nlohmann::json load(const std::filesystem::path& path) {
     return parse_json(read_file(path, "cannot be read as a scenario"), shown(path));
 }
 
+/// Refuses a robot with more joints than a JointVector holds, before the first one is filled.
+void check_joint_count(const Robot& robot) {
+    if (robot.joints.empty() || robot.joints.size() > largest_simulated_chain) {
+        throw InputError("robot " + robot.name + ": expected a chain of 1 to " +
+                         std::to_string(largest_simulated_chain) + " joints, found " +
+                         std::to_string(robot.joints.size()));
+    }
+}
+
 std::vector<std::string> read_columns(const JsonReader& reader) {
     static constexpr std::string_view known[] = {"q", "qd", "qdd", "tau", "i", "wrench"};
     std::vector<std::string> columns = reader.texts("columns", static_cast<int>(std::size(known)));
@@ -104,7 +113,7 @@ WrenchSensorModel read_force_torque(const ScenarioReader& reader, const Robot& r
     model.bits = reader.json().whole_or("bits", model.bits, 2, 40);
     model.range = Eigen::Map<const Wrench>(reader.json().positive_numbers("range", 6).data());
     if (reader.json().has("rotation_rad")) {
-        model.rotation = Eigen::Map<const Eigen::Vector3d>(reader.json().numbers("rotation_rad", 3).data());
+        model.rotation = reader.three("rotation_rad");
     }
     if (reader.json().has("calibration")) {
         model.calibration = Eigen::Map<const WrenchMatrix>(reader.json().numbers("calibration", 36).data());
@@ -171,8 +180,7 @@ ScenarioChain read_scenario_chain(const std::filesystem::path& path) {
     ScenarioChain result;
     result.tip = chain.json().text("tip");
     if (chain.json().has("tip_point_m")) {
-        const std::vector<double> point = chain.json().numbers("tip_point_m", 3);
-        result.tip_point = Eigen::Map<const Eigen::Vector3d>(point.data());
+        result.tip_point = chain.three("tip_point_m");
     }
     result.base = chain.text_or_empty("base");
     result.ft_joint = chain.text_or_empty("ft_joint");
@@ -189,6 +197,7 @@ ScenarioChain read_scenario_chain(const std::filesystem::path& path) {
 }
 
 Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
+    check_joint_count(robot);
     const nlohmann::json json = load(path);
     const ScenarioReader reader(JsonReader(json, shown(path)), static_cast<int>(robot.joints.size()));
     reader.allow_only({"schema", "chain", "seed", "integration_rate_hz", "recording", "task", "controller",

@@ -76,8 +76,7 @@ CircleTask read_circle(const ScenarioReader& reader) {
                        "rest_pull_per_s", "speed_variation", "centre_variation_m", "posture_variation_rad",
                        "variation_time_s"});
     CircleTask task;
-    const std::vector<double> centre = reader.json().numbers("centre_m", 3);
-    task.centre = Eigen::Map<const Eigen::Vector3d>(centre.data());
+    task.centre = reader.three("centre_m");
     task.radius = required(reader, "radius_m", 1e-6, 1e3);
     read_plane(reader.json(), task);
     task.period_s = required(reader, "period_s", 1e-3, longest_s);

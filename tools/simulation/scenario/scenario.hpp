@@ -66,7 +66,8 @@ struct ScenarioChain {
 ScenarioChain read_scenario_chain(const std::filesystem::path& path);
 
 /// Reads a scenario for `robot`. Throws InputError with the file and the path of the field for a field that
-/// is unknown, missing, out of range, of the wrong type or length, or inconsistent with another.
+/// is unknown, missing, out of range, of the wrong type or length, or inconsistent with another; and for a
+/// robot without joints or with more than `largest_simulated_chain`, each soft one counted twice.
 Scenario read_scenario(const std::filesystem::path& path, const Robot& robot);
 
 } // namespace dfdyn::tools

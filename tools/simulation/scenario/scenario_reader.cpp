@@ -39,8 +39,21 @@ JointVector ScenarioReader::positive_per_joint(const std::string& name) const {
     return result;
 }
 
+JointVector ScenarioReader::not_negative_per_joint(const std::string& name) const {
+    JointVector result = per_joint(name, 0);
+    if (!(result.minCoeff() >= 0)) {
+        throw json_.error(name, "numbers that are not negative", number_text(result.minCoeff()));
+    }
+    return result;
+}
+
 std::optional<JointVector> ScenarioReader::optional_per_joint(const std::string& name) const {
     return json_.has(name) ? std::optional(per_joint(name)) : std::nullopt;
+}
+
+Eigen::Vector3d ScenarioReader::three(const std::string& name) const {
+    const std::vector<double> values = json_.numbers(name, 3);
+    return Eigen::Map<const Eigen::Vector3d>(values.data());
 }
 
 Wrench ScenarioReader::six(const std::string& name) const {

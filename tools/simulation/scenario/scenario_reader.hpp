@@ -33,7 +33,12 @@ class ScenarioReader {
     JointVector per_joint(const std::string& name) const;
     JointVector per_joint(const std::string& name, double fallback) const;
     JointVector positive_per_joint(const std::string& name) const;
+    /// Returns zeros if the field is missing.
+    JointVector not_negative_per_joint(const std::string& name) const;
     std::optional<JointVector> optional_per_joint(const std::string& name) const;
+
+    /// Returns three numbers; the field is required.
+    Eigen::Vector3d three(const std::string& name) const;
 
     /// Returns six numbers; zeros if the field is missing.
     Wrench six(const std::string& name) const;

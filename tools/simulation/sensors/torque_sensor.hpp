@@ -4,9 +4,9 @@
 #include "tools/base/numerics/random_source.hpp"
 #include "tools/robot/dynamics/joint_vector.hpp"
 #include "tools/simulation/faults/fault.hpp"
+#include "tools/simulation/sensors/delay_line.hpp"
 
 #include <optional>
-#include <vector>
 
 namespace dfdyn::tools {
 
@@ -38,12 +38,8 @@ class TorqueSensor {
     JointVector read(const JointVector& torque);
 
   private:
-    JointVector delayed() const;
-
     TorqueSensorModel model_;
-    JointVector delay_steps_;
-    std::vector<JointVector> past_; ///< ring; empty without delay
-    std::size_t newest_ = 0;
+    std::optional<DelayLine<JointVector>> delay_;
     NormalSource noise_;
     std::optional<TorqueSensorFaults> faults_;
 };

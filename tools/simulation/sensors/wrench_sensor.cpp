@@ -36,30 +36,17 @@ WrenchMatrix response_of(const WrenchSensorModel& model) {
 WrenchSensor::WrenchSensor(const WrenchSensorModel& model, double period_s, std::uint64_t seed)
     : model_(model), response_(response_of(model)),
       steps_per_reading_(std::llround(1 / (model.rate_hz * period_s))),
-      filter_(model.order, bandwidth_of(model, period_s), period_s), delay_steps_(model.delay_s / period_s),
-      noise_(seed, stream::wrench_noise) {}
-
-Wrench WrenchSensor::delayed(const Wrench& wrench) {
-    if (past_.empty()) { // as if the wrench had always had this value
-        past_.assign(static_cast<std::size_t>(delay_steps_) + 2, wrench);
-    }
-    newest_ = (newest_ + 1) % past_.size();
-    past_[newest_] = wrench;
-    const auto whole = static_cast<std::size_t>(delay_steps_);
-    const double fraction = delay_steps_ - std::floor(delay_steps_);
-    const Wrench& later = past_[(newest_ + past_.size() - whole) % past_.size()];
-    const Wrench& earlier = past_[(newest_ + past_.size() - whole - 1) % past_.size()];
-    return later + fraction * (earlier - later);
-}
+      filter_(model.order, bandwidth_of(model, period_s), period_s),
+      delay_(Wrench::Constant(model.delay_s / period_s)), noise_(seed, stream::wrench_noise) {}
 
 void WrenchSensor::observe(double time_s, const Wrench& wrench) {
-    const Wrench seen = delayed(model_.bandwidth_hz > 0 ? filter_.filter(wrench) : wrench);
+    delay_.push(model_.bandwidth_hz > 0 ? filter_.filter(wrench) : wrench);
     if (next_-- > 0) {
         return;
     }
     next_ = steps_per_reading_ - 1;
     const Wrench size = step();
-    const Wrench calibrated = response_ * seen;
+    const Wrench calibrated = response_ * delay_.delayed();
     for (Eigen::Index axis = 0; axis < 6; ++axis) {
         const double value = calibrated[axis] + model_.bias[axis] + model_.drift_per_s[axis] * time_s +
                              model_.noise[axis] * noise_.next();

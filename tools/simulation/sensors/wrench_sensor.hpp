@@ -2,9 +2,8 @@
 #pragma once
 
 #include "tools/base/numerics/random_source.hpp"
+#include "tools/simulation/sensors/delay_line.hpp"
 #include "tools/simulation/sensors/low_pass.hpp"
-
-#include <vector>
 
 namespace dfdyn::tools {
 
@@ -42,16 +41,12 @@ class WrenchSensor {
     Wrench step() const;
 
   private:
-    Wrench delayed(const Wrench& wrench);
-
     WrenchSensorModel model_;
     WrenchMatrix response_; ///< product of calibration and mounting rotation
     std::int64_t steps_per_reading_;
     std::int64_t next_ = 0; ///< steps until the next reading
     LowPass filter_;
-    double delay_steps_;
-    std::vector<Wrench> past_; ///< ring of the filter's outputs
-    std::size_t newest_ = 0;
+    DelayLine<Wrench> delay_; ///< of the filter's outputs
     NormalSource noise_;
     Wrench reading_ = Wrench::Zero();
 };

@@ -106,6 +106,19 @@ TEST_CASE("a soft joint requires rotor inertia and must be revolute") {
     CHECK_THROWS_AS(SimulatedArm(sliding, actuators, JointVector::Zero(1)), InputError);
 }
 
+TEST_CASE("an arm with more rotors and links than a simulation holds is refused") {
+    Robot robot = pendulum(1, 1);
+    const RobotJoint joint = robot.joints.front();
+    robot.joints.assign(7, joint);
+    ActuatorModel actuators = free_actuators(7);
+    actuators.rotor_inertia.setConstant(0.1);
+    actuators.gear = {JointVector::Constant(7, 100), JointVector::Zero(7), JointVector::Zero(7)};
+    CHECK_THROWS_WITH(SimulatedArm(robot, actuators, JointVector::Zero(7)),
+                      "actuators: expected at most 12 joints, each soft one counted twice, found 14");
+    actuators.gear.stiffness.head(2).setZero();
+    CHECK(SimulatedArm(robot, actuators, JointVector::Zero(7)).dynamics().joint_count() == 12);
+}
+
 TEST_CASE("a load beyond a soft joint hangs at rest from the start") {
     ActuatorModel actuators = free_actuators(1);
     actuators.rotor_inertia[0] = 0.05;

@@ -63,6 +63,37 @@ TEST_CASE("the integration of the bristles is exact for one long step as for man
     CHECK(once.torque(0.3) == Approx(often.torque(0.3)).epsilon(1e-10));
 }
 
+TEST_CASE("friction that suddenly becomes smaller causes no peak of the torque") {
+    for (const double direction : {1.0, -1.0}) {
+        for (const double factor : {0.0, 1e-6, 0.1}) {
+            for (const double velocity : {0.3, 1e-3, -0.3}) {
+                LuGreFriction friction(parameters());
+                friction.advance(direction * 0.01, 1); // at the level
+                friction.set_factor(factor);
+                CAPTURE(direction, factor, velocity);
+                // The level, the damping of bristles that slip or reverse, and viscous friction.
+                const double level = 1.5 * factor + 1e-8;
+                CHECK(std::abs(friction.deflection()) <= level / 1000);
+                CHECK(std::abs(friction.torque(velocity)) <=
+                      level + 2 * std::abs(velocity) * (1 + 1.5) + 0.4 * factor * std::abs(velocity));
+            }
+        }
+    }
+}
+
+TEST_CASE("a factor changes no deflection within the new level in either direction") {
+    LuGreParameters uneven = parameters();
+    uneven.negative_excess = 0.4;
+    LuGreFriction friction(uneven);
+    friction.advance(-5, 1); // to -(1 + 0.4) / 1000, of a break-away level of 1.5 + 0.4
+    const double deflection = friction.deflection();
+    CHECK(deflection == Approx(-1.4e-3));
+    for (const double factor : {1.0, 0.8, 2.0}) {
+        friction.set_factor(factor);
+        CHECK(friction.deflection() == deflection);
+    }
+}
+
 TEST_CASE("without bristles only viscous friction remains") {
     LuGreParameters viscous;
     viscous.viscous = 0.7;

@@ -105,6 +105,73 @@ TEST_CASE("an invalid scenario is rejected with the path of the field and the ex
     CHECK_THROWS_WITH(read(missing), ContainsSubstring("controller: expected this field, found none"));
 }
 
+/// A chain of `joints` pendulums, one on the other.
+Robot chain_of(std::size_t joints) {
+    Robot robot = pendulum(1, 1);
+    const RobotJoint joint = robot.joints.front();
+    robot.joints.assign(joints, joint);
+    return robot;
+}
+
+TEST_CASE("a robot with more joints than a simulation holds is refused before any field per joint is read") {
+    json scenario = minimal();
+    scenario["controller"]["velocity_gain"] = 9;
+    CHECK(read(scenario, chain_of(12)).controller.velocity_gain.size() == 12);
+    CHECK_THROWS_WITH(read(scenario, chain_of(13)),
+                      "robot pendulum: expected a chain of 1 to 12 joints, found 13");
+    CHECK_THROWS_WITH(read(scenario, chain_of(0)),
+                      "robot pendulum: expected a chain of 1 to 12 joints, found 0");
+}
+
+TEST_CASE("joints with a soft gear count twice towards the longest chain of a scenario") {
+    json scenario = minimal();
+    scenario["controller"]["velocity_gain"] = 9;
+    scenario["actuators"]["rotor_inertia_kgm2"] = 0.1;
+    scenario["actuators"]["gear"]["stiffness_nm_per_rad"] = {500, 500, 500, 500, 500, 0, 0};
+    CHECK_NOTHROW(read(scenario, chain_of(7)));
+    scenario["actuators"]["gear"]["stiffness_nm_per_rad"] = 500;
+    CHECK_THROWS_WITH(
+        read(scenario, chain_of(7)),
+        Catch::Matchers::ContainsSubstring("s.json: actuators.gear.stiffness_nm_per_rad: expected "
+                                           "at most 12 joints, each soft one counted twice, "
+                                           "found 14"));
+}
+
+TEST_CASE("an impossible value of an actuator is reported with its field and its value") {
+    const std::string not_negative = ": expected numbers that are not negative, found ";
+    const auto message = [&](const std::string& field) { return "actuators." + field + not_negative; };
+    CHECK(error_with("/actuators/rotor_inertia_kgm2", -0.5) == message("rotor_inertia_kgm2") + "-0.5");
+    json gear = {{"stiffness_nm_per_rad", -2}};
+    CHECK(error_with("/actuators/gear", gear) == message("gear.stiffness_nm_per_rad") + "-2");
+    gear = {{"damping_nms_per_rad", -3}};
+    CHECK(error_with("/actuators/gear", gear) == message("gear.damping_nms_per_rad") + "-3");
+    gear = {{"gap_rad", -0.25}};
+    CHECK(error_with("/actuators/gear", gear) == message("gear.gap_rad") + "-0.25");
+    for (const std::string name : {"stiffness_nm_per_rad", "damping_nms_per_rad", "viscous_nms_per_rad",
+                                   "coulomb_nm", "coulomb_negative_nm", "load_coefficient"}) {
+        CHECK(error_with("/actuators/friction/" + name, -4) == message("friction." + name) + "-4");
+    }
+    CHECK(error_with("/actuators/torque_delay_s", 11) ==
+          "actuators.torque_delay_s: expected numbers from 0 to 10, found 11");
+    json two_joints = minimal();
+    two_joints["controller"]["velocity_gain"] = 9;
+    two_joints["actuators"]["torque_delay_s"] = {0, 11};
+    CHECK_THROWS_WITH(read(two_joints, chain_of(2)),
+                      Catch::Matchers::ContainsSubstring("numbers from 0 to 10, found 11"));
+}
+
+TEST_CASE("friction that needs bristles is refused at a joint without them") {
+    const std::string expected =
+        "actuators.friction.stiffness_nm_per_rad: expected a positive number at every "
+        "joint with other than viscous friction, found 0";
+    CHECK(error_with("/actuators/friction", {{"coulomb_nm", 1}, {"static_nm", 1}}) == expected);
+    for (const std::string name :
+         {"static_nm", "coulomb_negative_nm", "load_coefficient", "damping_nms_per_rad"}) {
+        CAPTURE(name);
+        CHECK(error_with("/actuators/friction/" + name, 0.1) == expected);
+    }
+}
+
 TEST_CASE("the calibration matrix of the F/T sensor is read row by row") {
     json scenario = minimal();
     std::vector<double> numbers(36);

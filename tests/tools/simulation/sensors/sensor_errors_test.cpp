@@ -110,18 +110,28 @@ TEST_CASE("each output has independent noise of its own size") {
     OutputNoiseModel model;
     model.torque = JointVector(2);
     model.torque << 0.1, 3;
+    CHECK(OutputNoise(model, 5).wrench().isZero(0));
+    model.wrench << 0.5, 1, 20, 0.02, 0.3, 4;
     OutputNoise noise(model, 5);
-    double products = 0;
-    JointVector squares = JointVector::Zero(2);
-    for (int row = 0; row < 20000; ++row) {
-        const JointVector values = noise.torque();
-        squares += values.cwiseAbs2();
-        products += values[0] * values[1];
-        REQUIRE(noise.wrench().isZero(0));
+    using Outputs = Eigen::Matrix<double, 8, 1>;
+    Eigen::Matrix<double, 8, 8> products = Eigen::Matrix<double, 8, 8>::Zero();
+    constexpr int rows = 20000;
+    for (int row = 0; row < rows; ++row) {
+        Outputs values;
+        values << noise.torque(), noise.wrench();
+        products += values * values.transpose();
     }
-    CHECK(std::sqrt(squares[0] / 20000) == Approx(0.1).epsilon(0.03));
-    CHECK(std::sqrt(squares[1] / 20000) == Approx(3).epsilon(0.03));
-    CHECK(std::abs(products / std::sqrt(squares[0] * squares[1])) < 0.03);
+    products /= rows;
+    Outputs expected;
+    expected << model.torque, model.wrench;
+    for (Eigen::Index i = 0; i < 8; ++i) {
+        CAPTURE(i);
+        CHECK(std::sqrt(products(i, i)) == Approx(expected[i]).epsilon(0.03));
+        for (Eigen::Index other = 0; other < i; ++other) {
+            CAPTURE(other);
+            CHECK(std::abs(products(i, other) / std::sqrt(products(i, i) * products(other, other))) < 0.03);
+        }
+    }
 }
 
 TEST_CASE("link errors change mass and centre of mass and must leave a positive mass") {
