@@ -19,8 +19,7 @@ share() {
     awk '
         / predicted,/ { for (i = 1; i < NF; ++i) if ($(i + 1) == "predicted,") predicted = $i }
         / x innovation_too_large/ { refused = $1 }
-        / x prediction_bounded/ { bounded = $1 }
-        END { printf "%.2f", 100 * refused / (predicted + bounded) }' "$1"
+        END { printf "%.2f", 100 * refused / predicted }' "$1"
 }
 errors() { awk '/nRMSE, one step/ { sub(/.*one step */, ""); gsub(/ +/, " "); print }' "$1"; }
 

@@ -284,7 +284,7 @@ int run(StartOptions options) {
     TrainedModel model = chosen.model;
     describe_training(model, arm, options);
     replay_held_out(model, split, files);
-    files.merge(project_files(model, split.judging.front()));
+    files.merge(project_files(model, split.judging));
     files["model.json"] = checked_json(model, options.folder / "model.json");
     files["README.txt"] =
         "Written by dfdyn start. Next, in the folder above this one:\n" + next_steps(options);

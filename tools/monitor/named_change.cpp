@@ -2,6 +2,7 @@
 #include "tools/monitor/named_change.hpp"
 
 #include "tools/base/text/number.hpp"
+#include "tools/monitor/recorded_time.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -13,10 +14,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-double seconds(const RecordedChanges& recorded, std::int64_t time_ns) {
-    return recorded.origin_s + 1e-9 * static_cast<double>(time_ns);
-}
-
 ordered_json to_json(const RecordedChanges& recorded, const NamedChange& change) {
     ordered_json parameters = ordered_json::array();
     for (const ChangeParameter& parameter : change.parameters) {
@@ -24,8 +21,8 @@ ordered_json to_json(const RecordedChanges& recorded, const NamedChange& change)
             {{"name", parameter.name}, {"value", parameter.value}, {"unit", parameter.unit}});
     }
     ordered_json result{
-        {"alarm", seconds(recorded, change.alarm_ns)},
-        {"onset", seconds(recorded, change.onset_ns)},
+        {"alarm", recorded_time_s(recorded.origin_s, change.alarm_ns)},
+        {"onset", recorded_time_s(recorded.origin_s, change.onset_ns)},
         {"end", nullptr},
         {"cause", name(change.cause)},
         {"where", change.where},
@@ -34,7 +31,7 @@ ordered_json to_json(const RecordedChanges& recorded, const NamedChange& change)
         {"runner_up", {{"cause", name(change.runner_up)}, {"confidence", change.runner_up_confidence}}},
         {"shown_by", change.shown_by}};
     if (change.end_ns != 0) {
-        result["end"] = seconds(recorded, change.end_ns);
+        result["end"] = recorded_time_s(recorded.origin_s, change.end_ns);
     }
     return result;
 }
@@ -52,11 +49,12 @@ std::string sizes_of(const NamedChange& change) {
 
 void print_changes(std::ostream& out, const RecordedChanges& recorded) {
     for (const NamedChange& change : recorded.changes) {
-        out << recorded.recording << ": " << formatted("%.2f", seconds(recorded, change.alarm_ns))
+        out << recorded.recording << ": "
+            << formatted("%.2f", recorded_time_s(recorded.origin_s, change.alarm_ns))
             << " s: " << name(change.cause) << (change.where.empty() ? "" : " at ") << change.where
             << sizes_of(change) << "; confidence " << formatted("%.2f", change.confidence) << ", since "
-            << formatted("%.2f", seconds(recorded, change.onset_ns)) << " s, else " << name(change.runner_up)
-            << ' ' << formatted("%.2f", change.runner_up_confidence) << '\n';
+            << formatted("%.2f", recorded_time_s(recorded.origin_s, change.onset_ns)) << " s, else "
+            << name(change.runner_up) << ' ' << formatted("%.2f", change.runner_up_confidence) << '\n';
     }
 }
 

@@ -14,7 +14,8 @@ namespace {
 constexpr double merged_below_s = 0.25;
 constexpr double margin = 3;
 constexpr double ordinary_share = 0.999;
-constexpr double patience_s = 1.5; // a contact of 1 s, and other contradictions shortly before
+constexpr double normal_quantile = 3.0902; // of ordinary_share
+constexpr double patience_s = 1.5;         // a contact of 1 s, and other contradictions shortly before
 constexpr double no_limit = 1e30;
 
 /// Learns the rows from `first` to `last`, counted over all recordings, and returns their innovations.
@@ -70,7 +71,9 @@ void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> 
     for (const std::vector<double>& half : innovations_of_halves(model, recordings, from_prior)) {
         ordinary = half.empty() ? no_limit : std::max(ordinary, quantile(half, ordinary_share));
     }
-    model.limits.innovation = std::min(margin * ordinary, no_limit);
+    const std::size_t outputs = model.outputs.names.size();
+    const double of_noise = static_cast<double>(outputs) * mean_square_quantile(outputs, normal_quantile);
+    model.limits.innovation = std::min(std::max(margin * ordinary, of_noise), no_limit);
 }
 
 } // namespace dfdyn::tools

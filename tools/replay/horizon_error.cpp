@@ -24,9 +24,11 @@ void HorizonError::add(const RuntimeEstimator& estimator, std::span<const double
 }
 
 void HorizonError::skip() {
-    models_.clear();
+    interrupt();
     ++ticks_;
 }
+
+void HorizonError::interrupt() { models_.clear(); }
 
 void HorizonError::forget_before(std::size_t tick) {
     std::erase_if(indices_, [tick](const HorizonIndex& index) { return index.tick < tick; });

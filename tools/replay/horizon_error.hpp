@@ -30,6 +30,9 @@ class HorizonError {
     /// Adds a tick without a prediction: no horizon extends across it.
     void skip();
 
+    /// Begins a recording or a stretch after a gap: no horizon extends across it.
+    void interrupt();
+
     /// Removes the indices of ticks before `tick`.
     void forget_before(std::size_t tick);
 

@@ -6,11 +6,11 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/model/inputs/input_description.hpp"
+#include "tools/replay/output_error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace dfdyn::tools {
 
@@ -83,6 +83,11 @@ void Replayer::for_each_column(Use use) {
     use(replayed_.duration_us, 1);
 }
 
+void Replayer::begin_recording() {
+    estimator_.begin_recording();
+    errors_.interrupt();
+}
+
 void Replayer::tick(double time_s, const MeasuredSample& sample) {
     estimate(time_s, sample);
     complete_tick();
@@ -129,8 +134,9 @@ void Replayer::estimate(double time_s, const MeasuredSample& sample) {
 void Replayer::complete_tick() {
     const std::size_t last = replayed_.time_s.size() - 1;
     ReplayTotals& totals = replayed_.totals;
+    replayed_.start_s = totals.ticks == 0 ? replayed_.time_s[last] : replayed_.start_s;
     ++totals.ticks;
-    totals.predicted += replayed_.status[last].predicted() ? 1 : 0;
+    totals.predicted += replayed_.status[last].estimated() ? 1 : 0;
     totals.learned += replayed_.status[last].learned() ? 1 : 0;
     ++totals.reasons[reason_name(replayed_, last)];
     if (memory_.sink != nullptr) {
@@ -190,7 +196,7 @@ ReplayedRecording replay(RuntimeEstimator& estimator, std::span<const TrainedMod
     Replayer replayer(estimator, recording.source, recording.output.names.size(), horizon);
     for (std::size_t row = 0; row < recording.row_count(); ++row) {
         if (recording.gap_before[row] != 0) {
-            estimator.begin_recording();
+            replayer.begin_recording();
         }
         replayer.tick(recording.time_s[row], sample_at(recording, row));
         on_tick(row + 1);
@@ -204,22 +210,12 @@ ReplayedRecording replay(RuntimeEstimator& estimator, std::span<const TrainedMod
 
 double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, std::size_t output,
                         std::size_t first, std::size_t last) {
-    std::vector<double> measured;
-    double error_square = 0;
+    OutputError error;
     for (std::size_t tick = first; tick < last; ++tick) {
-        const auto predicted = static_cast<double>(replayed.predicted[tick * outputs + output]);
-        const double output_value = replayed.measured[tick * outputs + output];
-        if (!std::isnan(predicted) && !std::isnan(output_value)) {
-            measured.push_back(output_value);
-            error_square += (measured.back() - predicted) * (measured.back() - predicted);
-        }
+        const std::size_t element = tick * outputs + output;
+        error.add(replayed.measured[element], static_cast<double>(replayed.predicted[element]));
     }
-    const double mean =
-        std::accumulate(measured.begin(), measured.end(), 0.0) / static_cast<double>(measured.size());
-    const double variation =
-        std::accumulate(measured.begin(), measured.end(), 0.0,
-                        [mean](double sum, double y) { return sum + (y - mean) * (y - mean); });
-    return std::sqrt(error_square / variation);
+    return error.normalised();
 }
 
 double share_within_two_deviations(const ReplayedRecording& replayed, std::size_t outputs,
@@ -242,7 +238,7 @@ double median_horizon_index(const ReplayedRecording& replayed, std::size_t outpu
                             double to_s) {
     std::vector<double> values;
     for (const HorizonIndex& index : replayed.horizon) {
-        const double t = replayed.time_s[index.tick] - replayed.time_s.front();
+        const double t = replayed.time_s[index.tick] - replayed.start_s;
         if (t >= from_s && t < to_s) {
             values.push_back(index.epsilon[output]);
         }

@@ -18,7 +18,9 @@ namespace dfdyn::tools {
 
 /// Counts over all ticks of a replay.
 struct ReplayTotals {
-    std::size_t ticks = 0, predicted = 0, learned = 0;
+    std::size_t ticks = 0;
+    std::size_t predicted = 0; ///< with a prediction, also one at the model's bound
+    std::size_t learned = 0;
     std::map<std::string_view, std::size_t> reasons; ///< number of occurrences of each `reason_name`
 };
 
@@ -27,6 +29,7 @@ struct ReplayTotals {
 struct ReplayedRecording {
     std::string source;
     double clock_origin_s = 0; ///< `time_s` of a sample with stamp 0
+    double start_s = 0;        ///< time of the first tick, also if it was removed
     std::vector<double> time_s;
     std::vector<double> measured;                     ///< ticks × m; NaN if not measured
     std::vector<float> predicted;                     ///< ticks × m; NaN without a prediction
@@ -79,6 +82,9 @@ class Replayer {
     Replayer(RuntimeEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon,
              const ReplayMemory& memory = {});
 
+    /// Begins a stretch after a gap: neither the estimator's window nor a horizon of ε extends across it.
+    void begin_recording();
+
     /// Runs one tick. `sample.output` is empty if it was not measured.
     void tick(double time_s, const MeasuredSample& sample);
     /// Runs one tick of a bus; `output`: reason if the output was not measured.
@@ -111,7 +117,7 @@ ReplayedRecording replay(RuntimeEstimator& estimator, std::span<const TrainedMod
                          const std::function<void(std::size_t)>& on_tick);
 
 /// rms(measured - predicted) / std(measured) of one output over the ticks in [first, last) with measurement
-/// and prediction; NaN if there are none.
+/// and prediction; NaN if there are none, infinite if all measured values are equal.
 double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, std::size_t output,
                         std::size_t first, std::size_t last);
 
@@ -120,8 +126,9 @@ double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, 
 double share_within_two_deviations(const ReplayedRecording& replayed, std::size_t outputs,
                                    std::size_t output);
 
-/// Median of ε of one output over the times t in [from_s, to_s) since the recording's start; NaN if there are
-/// none. The median is used because ε is relative and becomes arbitrarily large while an output is near zero.
+/// Median of ε of one output over the kept times t in [from_s, to_s) since the recording's start; NaN if
+/// there are none. The median is used because ε is relative and becomes arbitrarily large while an output is
+/// near zero.
 double median_horizon_index(const ReplayedRecording& replayed, std::size_t output, double from_s,
                             double to_s);
 

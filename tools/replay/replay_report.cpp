@@ -95,21 +95,30 @@ ReportInnovation innovation_of(const TrainedModel& model, std::span<const Replay
     return innovation;
 }
 
-/// Returns a sentence like "17154 ticks, every prediction made before its sample was learned. The measurement
+/// Returns sentences like "17154 ticks, every prediction made before its sample was learned. The measurement
 /// contradicts the model in 4 stretches."
 std::string summary_sentence(const ReplaySummary& summary) {
     std::size_t ticks = 0;
+    std::size_t forgotten = 0;
+    std::size_t predicted = 0;
     std::size_t stretches = 0;
     for (const RecordingFigures& figures : summary.recordings) {
         ticks += figures.ticks;
+        forgotten += figures.forgotten;
+        predicted += figures.predicted;
         stretches += figures.contradictions.size();
     }
+    if (predicted == 0) {
+        return std::to_string(ticks) + " ticks, nothing was predicted.";
+    }
+    const std::string part =
+        forgotten == 0 ? "" : "The figures are of the last " + std::to_string(ticks - forgotten) + " ticks. ";
     const std::string learning =
         std::to_string(ticks) + (summary.learned
                                      ? " ticks, every prediction made before its sample was learned. "
                                      : " ticks, predicted without learning. ");
-    return learning + (stretches == 0
-                           ? "The measurement does not contradict the model anywhere."
+    return learning + part +
+           (stretches == 0 ? "The measurement does not contradict the model anywhere."
                            : "The measurement contradicts the model in " + std::to_string(stretches) +
                                  (stretches == 1 ? " stretch." : " stretches."));
 }

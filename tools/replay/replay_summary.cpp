@@ -42,7 +42,9 @@ RecordingFigures figures_of(const ReplayedRecording& replayed, const TrainedMode
         figures.normalised_error_second_half.push_back(
             normalised_error(replayed, outputs, k, ticks / 2, ticks));
         figures.within_two_deviations.push_back(share_within_two_deviations(replayed, outputs, k));
-        figures.horizon_transient.push_back(median_horizon_index(replayed, k, 0, transient_s));
+        figures.horizon_transient.push_back(replayed.forgotten > 0
+                                                ? std::numeric_limits<double>::quiet_NaN() // it is incomplete
+                                                : median_horizon_index(replayed, k, 0, transient_s));
         figures.horizon_steady.push_back(
             median_horizon_index(replayed, k, transient_s, std::numeric_limits<double>::infinity()));
     }
@@ -105,6 +107,7 @@ nlohmann::ordered_json recording_json(const RecordingFigures& figures) {
                                 {"ticks", figures.ticks},
                                 {"predicted", figures.predicted},
                                 {"learned", figures.learned},
+                                {"forgotten", figures.forgotten},
                                 {"refused", nlohmann::ordered_json::object()},
                                 {"nrmse", figures.normalised_error},
                                 {"nrmse_second_half", figures.normalised_error_second_half},
@@ -135,11 +138,12 @@ ReplaySummary summarise(std::span<const TrainedModel> models, const RuntimeEstim
         summary.model += (summary.model.empty() ? "" : "; ") + describe_model(model);
     }
     summary.state_bytes = estimator.state_bytes();
-    summary.operations = estimator.cost().predict + estimator.cost().learn;
     for (const ReplayedRecording& recording : replayed) {
         summary.recordings.push_back(figures_of(recording, models.front()));
         summary.learned = summary.learned || summary.recordings.back().learned > 0;
     }
+    const Cost cost = estimator.cost(); // learning provides the variance
+    summary.operations = cost.predict + (summary.learned ? cost.learn : cost.variance);
     summary.no_rigid_body = reason_without_rigid_body(models, replayed);
     std::vector<double> durations = durations_of(replayed, summary.learned);
     if (durations.empty()) { // ticks with learning exist, but none among those kept

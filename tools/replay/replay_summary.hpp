@@ -24,8 +24,8 @@ struct RecordingFigures {
     std::vector<double> normalised_error;                      ///< one-step nRMSE over all ticks
     std::vector<OpponentErrors> opponents;                     ///< over the same ticks
     std::vector<double> normalised_error_second_half; ///< over the second half of the recording's ticks
-    std::vector<double> horizon_transient;            ///< median of ε over the first 30 s
-    std::vector<double> horizon_steady;               ///< median of ε after that
+    std::vector<double> horizon_transient; ///< median of ε over the first 30 s; NaN if ticks are forgotten
+    std::vector<double> horizon_steady;    ///< median of ε after that
     std::vector<Contradiction> contradictions;
 };
 
@@ -36,7 +36,8 @@ struct ReplaySummary {
     std::string model;         ///< one line: structure, input and features of each combined model
     std::string no_rigid_body; ///< reason for the missing rigid body to compare with; empty: there is one
     std::size_t state_bytes = 0;
-    /// multiply-adds per tick with learning, or per tick if there was no learning
+    /// multiply-adds of a tick that learns, or of one that predicts with its variance if there was no
+    /// learning
     std::int64_t operations = 0;
     bool learned = false; ///< whether any tick had learning
     /// of ticks with learning, or of those with a prediction if there was no learning; NaN: there are none

@@ -14,13 +14,6 @@ namespace {
 constexpr double room = 0.03; ///< of the range, at either end
 constexpr double most_steps = 10;
 
-/// Returns the smallest 1, 2 or 5 times a power of ten that is at least `value`.
-double round_step(double value) {
-    const double power = std::pow(10, std::floor(std::log10(value)));
-    const double digit = value / power * (1 - 1e-9);
-    return power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10);
-}
-
 /// `value` is a multiple of `step`, so that rounding errors near zero become zero.
 std::string label_of(double value, double step) {
     std::array<char, 32> text{};
@@ -38,6 +31,7 @@ double rounded_down(double value) {
     return power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
 }
 
+/// Returns the smallest 1, 2 or 5 times a power of ten that is at least `value`.
 double rounded_up(double value) {
     const double power = std::pow(10, std::floor(std::log10(value) + nearly));
     const double digit = value / power * (1 - nearly);
@@ -83,7 +77,7 @@ LinearAxis linear_axis(const std::vector<double>& values, double low_pixel, doub
 }
 
 std::vector<AxisTick> ticks_of(const LinearAxis& axis) {
-    const double step = round_step((axis.high - axis.low) / most_steps);
+    const double step = rounded_up((axis.high - axis.low) / most_steps);
     std::vector<AxisTick> ticks;
     const double first = std::ceil(axis.low / step);
     const double last = std::floor(axis.high / step);

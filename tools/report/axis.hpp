@@ -24,7 +24,8 @@ struct LinearAxis {
 /// Returns an axis for the finite ones of `values`, with a margin at both ends; 0 … 1 if there are none.
 LinearAxis linear_axis(const std::vector<double>& values, double low_pixel, double high_pixel);
 
-/// Returns five to ten labelled multiples of 1, 2 or 5 times a power of ten within the axis.
+/// Returns the labelled multiples, within the axis, of the smallest 1, 2 or 5 times a power of ten that is at
+/// least a tenth of its range: four to eleven.
 std::vector<AxisTick> ticks_of(const LinearAxis& axis);
 
 /// A logarithmic axis that maps values in [low, high] to the interval between two pixels.

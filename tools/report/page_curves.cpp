@@ -62,10 +62,24 @@ void add_extremes(const ReportSeries& series, std::size_t first, std::size_t las
     kept.insert(kept.end(), {least, most, worst});
 }
 
+/// Returns the tick of first..last-1 with the largest finite innovation; `first` if none is finite.
+std::size_t largest_innovation(const ReportInnovation& innovation, std::size_t first, std::size_t last) {
+    const auto size = [&](std::size_t tick) {
+        const float value = innovation.normalised_squared[tick];
+        return std::isfinite(value) ? value : -1.0F;
+    };
+    std::size_t largest = first;
+    for (std::size_t tick = first; tick < last; ++tick) {
+        largest = size(tick) > size(largest) ? tick : largest;
+    }
+    return largest;
+}
+
 /// Returns the ticks of a thinned page, ascending.
 Ticks kept_ticks(const Report& report, const Ticks& breaks) {
     const std::size_t ticks = report.time_s.size();
-    const std::size_t per_stretch = 1 + 3 * report.series.size(); // its first tick, and add_extremes()
+    // of a stretch: its first tick, its largest innovation, and add_extremes()
+    const std::size_t per_stretch = 1 + (report.innovation ? 1 : 0) + 3 * report.series.size();
     const std::size_t gaps = std::min(breaks.size(), most_gaps);
     const std::size_t stretches = (most_report_ticks - 2 * gaps - 1) / per_stretch;
     Ticks kept{ticks - 1};
@@ -78,6 +92,9 @@ Ticks kept_ticks(const Report& report, const Ticks& breaks) {
         kept.push_back(first);
         for (const ReportSeries& series : report.series) {
             add_extremes(series, first, last, kept);
+        }
+        if (report.innovation) {
+            kept.push_back(largest_innovation(*report.innovation, first, last));
         }
     }
     std::ranges::sort(kept);
@@ -113,8 +130,8 @@ bool has_thinned_page(const Report& report) { return report.time_s.size() > most
 
 PageCurves page_curves(const Report& report) {
     const double sample_time_s = median_step_s(report.time_s);
-    PageCurves page{report, ticks_after_gaps(report, sample_time_s), sample_time_s};
-    if (!has_thinned_page(report)) {
+    PageCurves page{report, ticks_after_gaps(report, sample_time_s), sample_time_s, has_thinned_page(report)};
+    if (!page.thinned) {
         return page;
     }
     const Ticks kept = kept_ticks(report, page.breaks);

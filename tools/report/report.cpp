@@ -70,9 +70,6 @@ void check_annotations(const Report& report) {
                     interval.start_s <= interval.end_s,
                 at("intervals", i), "expected a finite start and an end not before it");
     }
-    for (std::size_t i = 0; i < report.marks.size(); ++i) {
-        require(std::isfinite(report.marks[i].time_s), at("marks", i), "expected a finite time");
-    }
     for (std::size_t i = 0; i < report.recordings.size(); ++i) {
         const ReportRecording& recording = report.recordings[i];
         require(std::isfinite(recording.start_s) && std::isfinite(recording.first_t_s), at("recordings", i),
@@ -110,9 +107,6 @@ void add_annotations(json& data, const Report& report) {
         data["intervals"].push_back(
             {{"start_s", interval.start_s}, {"end_s", interval.end_s}, {"label", interval.label}});
     }
-    for (const ReportMark& mark : report.marks) {
-        data["marks"].push_back({{"time_s", mark.time_s}, {"label", mark.label}});
-    }
     for (const ReportRecording& recording : report.recordings) {
         data["recordings"].push_back(
             {{"start_s", recording.start_s}, {"first_t_s", recording.first_t_s}, {"name", recording.name}});
@@ -142,7 +136,8 @@ std::string thinning_html(const Report& report, std::size_t kept) {
     }
     const std::string all = std::to_string(report.time_s.size());
     return "<p>The curves contain " + std::to_string(kept) + " of " + all +
-           " ticks, among them all extremes. All ticks " +
+           " ticks, among them the extremes of outputs, errors and innovations. Figures of the part in view "
+           "need all ticks and are left out. All ticks " +
            (report.full_data.empty() ? "are in the table that <code>dfdyn replay -o</code> writes"
                                      : "are in <a href=\"" + link_to(report.full_data) + "\">" +
                                            escape_html(report.full_data) + "</a>") +
@@ -154,11 +149,11 @@ json page_data(const PageCurves& curves) {
     const Report& report = curves.report;
     json data = {{"time_s", base64_doubles(report.time_s)},
                  {"sample_time_s", curves.sample_time_s},
+                 {"thinned", curves.thinned},
                  {"breaks", curves.breaks},
                  {"series", json::array()},
                  {"innovation", nullptr},
                  {"intervals", json::array()},
-                 {"marks", json::array()},
                  {"recordings", json::array()}};
     for (const ReportSeries& series : report.series) {
         data["series"].push_back(series_json(series));

@@ -35,12 +35,6 @@ struct ReportInterval {
     std::string label;
 };
 
-/// A marked point on the time axis.
-struct ReportMark {
-    double time_s{};
-    std::string label;
-};
-
 /// The beginning of a recording at `start_s` on the time axis; the time of its first row is `first_t_s`. It
 /// ends at the beginning of the next one.
 struct ReportRecording {
@@ -76,7 +70,6 @@ struct Report {
     std::vector<ReportSeries> series;
     std::optional<ReportInnovation> innovation;
     std::vector<ReportInterval> intervals;
-    std::vector<ReportMark> marks;
     std::vector<ReportRecording> recordings; ///< in order of start_s
     /// Name of the CSV file with all ticks in the page's folder, to which a thinned page links; empty: none
     std::string full_data;
@@ -90,9 +83,10 @@ bool has_thinned_page(const Report& report);
 
 /// Returns the report as one HTML page without external files or network access. Throws std::invalid_argument
 /// with the field's name if lengths or times violate the contracts above. Cost O(ticks * series). Above
-/// `most_report_ticks` ticks, the page contains the extremes of each output and its error in intervals of
-/// equal length, and the ticks at gaps, and states this. Size: at most about 16 bytes per kept tick and
-/// output, and 150 kB for the page itself.
+/// `most_report_ticks` ticks, the page contains the extremes of each output and its error and the largest
+/// innovation in intervals of equal length, and the ticks at gaps. It states this, and has no figures of the
+/// part in view: the kept ticks are not typical. Size: at most about 16 bytes per kept tick and output, and
+/// 150 kB for the page itself.
 std::string render_report(const Report& report);
 
 } // namespace dfdyn::tools

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double widest_fixed_ratio = 1e5;
 constexpr double largest_fixed = 1e15;
-constexpr int most_decimals = 9;
+constexpr double most_decimals = 9;
 
 /// Range of the magnitudes of a column's numbers that are finite and not zero.
 struct Magnitudes {
@@ -124,10 +124,11 @@ std::string words_html(const std::string& text) {
 
 std::vector<std::string> format_column(const std::vector<double>& numbers) {
     const Magnitudes magnitudes = measure(numbers);
-    const bool fixed =
-        magnitudes.largest <= magnitudes.smallest * widest_fixed_ratio && magnitudes.largest < largest_fixed;
-    const int decimals =
-        std::clamp(2 - static_cast<int>(std::floor(magnitudes.mean_exponent)), 0, most_decimals);
+    const double of_smallest = -std::floor(std::log10(magnitudes.smallest)); // decimals that show it
+    const bool fixed = magnitudes.largest <= magnitudes.smallest * widest_fixed_ratio &&
+                       magnitudes.largest < largest_fixed && of_smallest <= most_decimals;
+    const int decimals = static_cast<int>(
+        std::clamp(std::max(2 - std::floor(magnitudes.mean_exponent), of_smallest), 0.0, most_decimals));
     std::vector<std::string> texts;
     for (const double number : numbers) {
         if (magnitudes.whole && magnitudes.largest < largest_fixed) {

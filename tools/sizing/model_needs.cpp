@@ -10,7 +10,6 @@
 #include "tools/model/run_time/runtime_estimator.hpp"
 #include "tools/model/structure.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -137,13 +136,15 @@ std::string byte_words(std::int64_t bytes) {
                         : number_text(static_cast<double>(bytes) / 1024) + " KiB";
 }
 
-/// Rounds up to tenths of KiB, so that a size beyond a bound is also larger as text.
 std::string rounded_byte_words(std::int64_t bytes) {
-    return bytes < 1024 ? byte_words(bytes)
-                        : number_text(std::ceil(static_cast<double>(bytes) / 102.4) / 10) + " KiB";
+    return bytes < 1024 ? byte_words(bytes) : number_text(kib_rounded_up(bytes)) + " KiB";
 }
 
 } // namespace
+
+double kib_rounded_up(std::int64_t bytes) {
+    return static_cast<double>((10 * bytes + 1023) / 1024) / 10; // in whole bytes: 24 KiB remain 24.0
+}
 
 bool fits(const ModelNeeds& needs, const TargetBudget& budget) {
     return needs.flash_bytes <= budget.flash_bytes && needs.ram_bytes <= budget.ram_bytes &&
@@ -180,7 +181,7 @@ std::string to_text(const TargetBudget& budget) {
 std::string to_text(const ModelNeeds& needs) {
     char text[120];
     std::snprintf(text, sizeof text, "flash %.1f KiB, RAM %.1f KiB, %lld multiply-adds per tick",
-                  static_cast<double>(needs.flash_bytes) / 1024, static_cast<double>(needs.ram_bytes) / 1024,
+                  kib_rounded_up(needs.flash_bytes), kib_rounded_up(needs.ram_bytes),
                   static_cast<long long>(needs.tick_operations));
     return text;
 }

@@ -44,8 +44,13 @@ bool fits(const ModelNeeds& needs, const TargetBudget& budget);
 /// Returns what exceeds the budget, like "flash: expected at most 2 KiB, found 24.1 KiB"; empty: nothing.
 std::string excess_text(const ModelNeeds& needs, const TargetBudget& budget);
 
-/// Returns text like "flash 61.2 KiB, RAM 40.0 KiB, 70000 multiply-adds per tick".
+/// Returns a size in KiB, rounded up to tenths: a bound remains one, and a size beyond a budget exceeds it as
+/// text, too.
+double kib_rounded_up(std::int64_t bytes);
+
+/// Returns text like "flash 61.2 KiB, RAM 40.0 KiB, 70000 multiply-adds per tick", with sizes rounded up.
 std::string to_text(const ModelNeeds& needs);
+/// Returns text like "flash 64 KiB, RAM unlimited, unlimited multiply-adds per tick", with exact sizes.
 std::string to_text(const TargetBudget& budget);
 
 } // namespace dfdyn::tools

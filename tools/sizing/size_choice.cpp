@@ -7,6 +7,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/inputs/input_description.hpp"
+#include "tools/replay/output_error.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/training/data/lag_spacing.hpp"
 #include "tools/training/training_options.hpp"
@@ -33,17 +34,21 @@ constexpr std::array<double, 3> memories_s{5, 30, 180};
 
 double held_out_error(const TrainedModel& model, std::span<const Recording> recordings) {
     const auto estimator = make_estimator(model, false);
-    const std::size_t outputs = model.outputs.names.size();
-    double total = 0;
-    int known = 0; // an output that does not change has no error
+    std::vector<OutputError> errors(model.outputs.names.size());
     for (const Recording& recording : recordings) {
         const ReplayedRecording replayed = replay(*estimator, {&model, 1}, recording, 0, [](std::size_t) {});
-        for (std::size_t k = 0; k < outputs; ++k) {
-            const double error = normalised_error(replayed, outputs, k, 0, replayed.time_s.size());
-            if (!std::isinf(error)) {
-                total += std::isnan(error) ? 1 : error; // without a prediction: as good as a constant
-                ++known;
-            }
+        for (std::size_t element = 0; element < replayed.predicted.size(); ++element) {
+            errors[element % errors.size()].add(replayed.measured[element],
+                                                static_cast<double>(replayed.predicted[element]));
+        }
+    }
+    double total = 0;
+    int known = 0; // an output that does not change has no error
+    for (const OutputError& output : errors) {
+        const double error = output.normalised();
+        if (!std::isinf(error)) {
+            total += std::isnan(error) ? 1 : error; // without a prediction: as good as a constant
+            ++known;
         }
     }
     return known > 0 ? total / known : std::numeric_limits<double>::infinity();

@@ -26,7 +26,7 @@ struct SizeCandidate {
     double window_s = 0;
     double memory_s = 0; ///< 0: unlimited
     ModelNeeds needs;
-    double error = 0; ///< held-out error: mean nRMSE over the outputs
+    double error = 0; ///< `held_out_error`
 };
 
 struct SizeChoice {
@@ -47,7 +47,8 @@ SizeChoice choose_sizes(std::span<const Recording> recordings, OutputKind output
                         const std::function<void()>& on_candidate = {});
 
 /// Returns the error of `model`, which starts as trained and learns, over recordings: nRMSE of the one-step
-/// predictions, mean over outputs and recordings; infinite without predictions.
+/// predictions over the ticks of all recordings together, mean over the outputs. An output without any
+/// prediction counts 1, as good as a constant; one that never changes is left out. Infinite if none changes.
 double held_out_error(const TrainedModel& model, std::span<const Recording> recordings);
 
 /// Returns the next smaller number of features of the search; 0 if there is none.

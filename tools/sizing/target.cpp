@@ -55,10 +55,10 @@ void print_smaller(std::ostream& out, const TrainedModel& model) {
                   own->error);
     out << text;
     for (const SizeRecord& size : smaller) {
-        std::snprintf(
-            text, sizeof text, "  %d features: flash %.1f KiB, RAM %.1f KiB, nRMSE %.3f (%+.1f %%)\n",
-            size.features, static_cast<double>(size.flash_bytes) / 1024,
-            static_cast<double>(size.ram_bytes) / 1024, size.error, 100 * (size.error / own->error - 1));
+        std::snprintf(text, sizeof text,
+                      "  %d features: flash %.1f KiB, RAM %.1f KiB, nRMSE %.3f (%+.1f %%)\n", size.features,
+                      kib_rounded_up(size.flash_bytes), kib_rounded_up(size.ram_bytes), size.error,
+                      100 * (size.error / own->error - 1));
         out << text;
     }
 }
@@ -107,9 +107,8 @@ void print_footprint(std::ostream& out, const TrainedModel& model, const Target&
     std::snprintf(text, sizeof text,
                   "on %s: flash at most %.1f KiB, RAM at most %.1f KiB (of it stack %.1f KiB), about %lld "
                   "instructions per tick to predict and learn (largest tick %lld, predict only %lld)\n",
-                  target.name.c_str(), static_cast<double>(needs.flash_bytes) / 1024,
-                  static_cast<double>(needs.ram_bytes) / 1024, static_cast<double>(needs.stack_bytes) / 1024,
-                  static_cast<long long>(instructions.predict_and_learn),
+                  target.name.c_str(), kib_rounded_up(needs.flash_bytes), kib_rounded_up(needs.ram_bytes),
+                  kib_rounded_up(needs.stack_bytes), static_cast<long long>(instructions.predict_and_learn),
                   static_cast<long long>(instructions.largest), static_cast<long long>(instructions.predict));
     out << text;
     print_smaller(out, model);

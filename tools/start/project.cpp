@@ -11,6 +11,7 @@
 #include "tools/replay/replay.hpp"
 #include "tools/start/embedded_files.hpp"
 
+#include <algorithm>
 #include <array>
 #include <sstream>
 #include <string_view>
@@ -115,7 +116,8 @@ void copy_embedded(FolderContent& content, std::string_view prefix, const std::s
 
 } // namespace
 
-FolderContent project_files(const TrainedModel& model, const Recording& recording) {
+FolderContent project_files(const TrainedModel& model, std::span<const Recording> recordings) {
+    const Recording& longest = *std::ranges::max_element(recordings, {}, &Recording::row_count);
     FolderContent content;
     copy_embedded(content, "include/", "include/");
     copy_embedded(content, "licence", "include/dfdyn/LICENSE");
@@ -127,7 +129,7 @@ FolderContent project_files(const TrainedModel& model, const Recording& recordin
         copy_embedded(content, "templates/" + std::string(from), std::string(to));
     }
     content["include/robot_model.hpp"] = model_to_header(model, "robot_model");
-    content["src/recorded_ticks.hpp"] = ticks_header(model, recording);
+    content["src/recorded_ticks.hpp"] = ticks_header(model, longest);
     return content;
 }
 

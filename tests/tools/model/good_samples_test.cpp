@@ -13,9 +13,11 @@ namespace good_samples_test {
 
 using namespace dfdyn::tools;
 
-Recording recording(const std::string& file) {
+Recording recording(const std::string& file, OutputKind outputs = OutputKind::motor_current,
+                    RowRange rows = {}) {
     ReadOptions options;
-    options.outputs = OutputKind::motor_current;
+    options.outputs = outputs;
+    options.rows = rows;
     return read_recording(std::filesystem::path(DFDYN_TEST_DATA_DIR) / file, options);
 }
 
@@ -36,10 +38,9 @@ struct Outcome {
     std::size_t contradictions = 0;
 };
 
-Outcome replayed(const TrainedModel& model, const std::string& file) {
+Outcome replayed(const TrainedModel& model, const Recording& motion) {
     const auto estimator = make_estimator(model, false);
-    const ReplayedRecording result =
-        replay(*estimator, std::span(&model, 1), recording(file), 0, [](std::size_t) {});
+    const ReplayedRecording result = replay(*estimator, std::span(&model, 1), motion, 0, [](std::size_t) {});
     const auto refused = std::ranges::count_if(result.status, [](const dfdyn::Status& status) {
         return status.learning == dfdyn::Reason::innovation_too_large;
     });
@@ -54,12 +55,13 @@ TEST_CASE("a UR5 rejects no good sample of another motion but reports a person's
     const TrainedModel model = trained_on("ur5_kufieta/Movement_No6_Acc_slow_Verify_Model.csv");
     for (const char* motion : {"No7_Acc_slow_Verify_Model_short", "No9_Singularity_Free_NoDist"}) {
         CAPTURE(motion);
-        const Outcome outcome = replayed(model, std::string("ur5_kufieta/Movement_") + motion + ".csv");
+        const Outcome outcome =
+            replayed(model, recording(std::string("ur5_kufieta/Movement_") + motion + ".csv"));
         CHECK(outcome.refused_share < 0.001);
         CHECK(outcome.learned_share > 0.95);
     }
-    const Outcome pushed =
-        replayed(model, "ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short_with_disturbance.csv");
+    const Outcome pushed = replayed(
+        model, recording("ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short_with_disturbance.csv"));
     CHECK(pushed.contradictions >= 3); // of five pushes
 }
 
@@ -68,10 +70,30 @@ TEST_CASE("a servo rejects no good sample at other gains and along other motions
     for (const char* run : {"04_sin_sin_kp200", "08_sin_sin_kp400", "12_sin_sin_kp800",
                             "14_up_and_down_kp800", "15_sin_time_square_kp800"}) {
         CAPTURE(run);
-        const Outcome outcome = replayed(model, std::string("xl330_bam/") + run + ".csv");
+        const Outcome outcome = replayed(model, recording(std::string("xl330_bam/") + run + ".csv"));
         CHECK(outcome.refused_share < 0.001);
         CHECK(outcome.learned_share > 0.95);
     }
+}
+
+TEST_CASE("a model of two seconds of motion rejects no good sample of the next second") {
+    const std::string file = "tx40_figaroh/tx40_5kHz.csv";
+    const std::vector<Recording> learned{
+        recording(file, OutputKind::joint_torque, {.first = 0, .last = 10'500})};
+    ModelTraining training;
+    training.options.lags = 20;
+    training.options.every = 10;
+    training.options.feature_count = 63;
+    training.options.likelihood_rows = 200;
+    training.options.starts = 1;
+    training.options.refinement_evaluations = 0;
+    TrainedModel model =
+        train_model(prepare_training(learned, training), OutputKind::joint_torque, training, {}).model;
+    calibrate_innovation_limit(model, learned);
+    const Outcome outcome =
+        replayed(model, recording(file, OutputKind::joint_torque, {.first = 10'500, .last = 15'000}));
+    CHECK(outcome.refused_share == 0);
+    CHECK(outcome.learned_share > 0.95);
 }
 
 } // namespace good_samples_test

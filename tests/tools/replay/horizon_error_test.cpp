@@ -105,6 +105,24 @@ TEST_CASE("no horizon extends across a tick without a prediction") {
     CHECK(ticks == std::vector<std::size_t>{0, 1, 6});
 }
 
+TEST_CASE("no horizon extends across an interruption, which is no tick") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const std::vector<Step> steps = random_steps(engine, 8);
+    PrescribedEstimator estimator;
+    HorizonError errors(3, 2, 2);
+    for (std::size_t t = 0; t < steps.size(); ++t) {
+        if (t == 4) {
+            errors.interrupt();
+        }
+        errors.add(estimator, steps[t].measured);
+    }
+    std::vector<std::size_t> ticks;
+    for (const HorizonIndex& index : errors.indices()) {
+        ticks.push_back(index.tick);
+    }
+    CHECK(ticks == std::vector<std::size_t>{0, 4});
+}
+
 TEST_CASE("an output that stays at zero has no relative error") {
     PrescribedEstimator estimator;
     HorizonError errors(1, 2, 2);

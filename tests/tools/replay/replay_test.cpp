@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -67,6 +68,54 @@ TEST_CASE("a replay predicts once the window is full and again after a gap and l
         CHECK(replayed.status[tick].learned() == !filling);
     }
     CHECK(replayed.horizon.size() == 2 * (96 - 3));
+}
+
+TEST_CASE("no horizon of a model with measured derivatives extends across a gap") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const TrainedModel model = dfdyn::tests::small_physics_model(engine, "P", InputKind::STD, true);
+    Recording recording = moving_arm(20);
+    recording.velocity = recording.acceleration = recording.position;
+    recording.gap_before[10] = 1;
+    const ReplayedRecording replayed = replay_of(model, recording, 3);
+    REQUIRE(replayed.totals.predicted == 20); // there is no window that fills
+    CHECK(replayed.horizon.size() == 2 * (10 - 3));
+}
+
+TEST_CASE("predictions at the model's bound count as predictions, so that fewer are never learned") {
+    DFDYN_SEEDED_ENGINE(engine);
+    TrainedModel model = small_model(engine, InputKind::DFR);
+    model.limits.prediction.assign(6, 1e-3);
+    const ReplayedRecording replayed = replay_of(model, moving_arm(200), 0);
+    CHECK(std::ranges::count(replayed.status, dfdyn::Reason::prediction_bounded, &dfdyn::Status::prediction) >
+          100);
+    CHECK(replayed.totals.predicted == 196);
+    CHECK(replayed.totals.learned == 196);
+}
+
+TEST_CASE("the cost of a tick is that of what the replay did") {
+    std::mt19937_64 engine(1);
+    const TrainedModel model = small_model(engine, InputKind::DFR);
+    const auto estimator = make_estimator(model, true);
+    const dfdyn::Cost cost = estimator->cost();
+    const auto operations = [&](std::size_t rows) {
+        const ReplayedRecording replayed = replay_of(model, moving_arm(rows), 0);
+        return summarise({&model, 1}, *estimator, {&replayed, 1}, 0).operations;
+    };
+    CHECK(operations(50) == cost.predict + cost.learn);
+    CHECK(operations(3) == cost.predict + cost.variance); // nothing is learned while the window fills
+}
+
+TEST_CASE("the report of a replay without any prediction claims no agreement with the model") {
+    std::mt19937_64 engine(1);
+    const TrainedModel model = small_model(engine, InputKind::DFR);
+    const auto estimator = make_estimator(model, true);
+    const auto summary_of = [&](std::size_t rows) {
+        const std::vector<ReplayedRecording> replayed{replay_of(model, moving_arm(rows), 0)};
+        const ReplaySummary summary = summarise({&model, 1}, *estimator, replayed, 0);
+        return make_replay_report(model, replayed, summary).summary;
+    };
+    CHECK(summary_of(3) == "3 ticks, nothing was predicted.");
+    CHECK_THAT(summary_of(50), Catch::Matchers::ContainsSubstring("The measurement "));
 }
 
 TEST_CASE("the report of a recording without ticks has neither curves nor times") {
@@ -173,6 +222,36 @@ TEST_CASE("a replay of bounded length keeps the indices of its last ticks") {
     }
 }
 
+TEST_CASE("a replay that forgot its first ticks says so and shows no figures of its beginning") {
+    std::mt19937_64 engine(1);
+    const TrainedModel model = small_model(engine, InputKind::DFR);
+    const Recording recording = moving_arm(300);
+    for (const std::size_t kept_ticks : {std::size_t{0}, std::size_t{50}}) {
+        const auto estimator = make_estimator(model, true);
+        Replayer replayer(*estimator, "can0", 6, 5, {kept_ticks, nullptr});
+        for (std::size_t row = 0; row < recording.row_count(); ++row) {
+            replayer.tick(1000 + 0.5 * static_cast<double>(row), sample_at(recording, row)); // 150 s
+        }
+        const std::vector<ReplayedRecording> replayed{replayer.finish()};
+        const std::size_t forgotten = replayed[0].forgotten;
+        REQUIRE((forgotten > 0) == (kept_ticks > 0));
+        const ReplaySummary summary = summarise({&model, 1}, *estimator, replayed, 5);
+        CHECK(replay_json(summary)["recordings"][0]["forgotten"] == forgotten);
+        const std::string note =
+            "The figures are of the last " + std::to_string(300 - forgotten) + " ticks. ";
+        const Report report = make_replay_report(model, replayed, summary);
+        CHECK((report.summary.find(note) != std::string::npos) == (forgotten > 0));
+        CHECK(std::isnan(summary.recordings[0].horizon_transient[0]) == (forgotten > 0));
+        std::vector<double> later;
+        for (const HorizonIndex& index : replayed[0].horizon) {
+            if (replayed[0].time_s[index.tick] >= 1030) {
+                later.push_back(index.epsilon[0]);
+            }
+        }
+        CHECK(summary.recordings[0].horizon_steady[0] == median(later));
+    }
+}
+
 TEST_CASE("the normalised error follows its definition over predicted ticks only") {
     ReplayedRecording replayed;
     replayed.measured = {1, 3, 5, 7};
@@ -180,6 +259,7 @@ TEST_CASE("the normalised error follows its definition over predicted ticks only
     // Errors 1, 0, -2 over the outputs 3, 5, 7 with mean 5: mean square 5/3, variance 8/3.
     CHECK(normalised_error(replayed, 1, 0, 0, 4) == Approx(std::sqrt(5.0 / 8.0)));
     CHECK(std::isnan(normalised_error(replayed, 1, 0, 0, 1)));
+    CHECK(std::isinf(normalised_error(replayed, 1, 0, 3, 4))); // one value has no deviation
 }
 
 TEST_CASE("contradictions are intervals above the limit") {
@@ -220,6 +300,18 @@ TEST_CASE("the innovation limit follows the larger innovations of the two halves
         ordinary = std::max(ordinary, quantile(innovations, 0.999));
     }
     CHECK(model.limits.innovation == Approx(3 * ordinary));
+}
+
+TEST_CASE("the innovation limit is at least what noise alone exceeds once in a thousand samples") {
+    DFDYN_SEEDED_ENGINE(engine);
+    TrainedModel model = small_model(engine, InputKind::DFR);
+    for (double& noise : model.outputs.noise_std) {
+        noise *= 100; // the innovations of the halves are small
+    }
+    const std::vector<Recording> recordings{moving_arm(2000)};
+    calibrate_innovation_limit(model, recordings);
+    REQUIRE(model.outputs.names.size() == 6);
+    CHECK(model.limits.innovation == Approx(22.458).epsilon(0.02)); // chi-square with 6 degrees of freedom
 }
 
 TEST_CASE("the CSV of a replay has the columns that scripts use") {

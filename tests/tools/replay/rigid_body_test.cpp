@@ -291,6 +291,15 @@ TEST_CASE("columns of rounding errors give no parameter that another motion woul
     }
 }
 
+TEST_CASE("a recording of exactly 20,000 rows is fitted with all of them") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Recording training = recording_of(TwoJointMotion(engine), 20000);
+    for (std::size_t i = 0; i < training.output.values.size(); ++i) {
+        training.output.values[i] = i / 2 % 2 == 0 ? 1 : -1; // every second row alone has the offset 1
+    }
+    CHECK(std::abs(fit_planar(training)[0].friction[2]) < 0.1);
+}
+
 TEST_CASE("training data without a long enough segment give no rigid body") {
     DFDYN_SEEDED_ENGINE(engine);
     Recording training = recording_of(TwoJointMotion(engine), 10);

@@ -23,6 +23,12 @@ TEST_CASE("the numbers of a column have equal decimals with three digits for a t
     CHECK(tools::format_column({-0.0512, 0.0}) == Texts{"-0.0512", "0.0000"});
 }
 
+TEST_CASE("a number that is not zero is not shown as zero") {
+    CHECK(tools::format_column({0.0004, 30.0}) == Texts{"0.0004", "30.0000"});
+    CHECK(tools::format_column({-0.002, 40.0, 45.0, 0.0}) == Texts{"-0.002", "40.000", "45.000", "0.000"});
+    CHECK(tools::format_column({1.5e-12, 2e-10}) == Texts{"1.5e-12", "2e-10"});
+}
+
 TEST_CASE("a column of whole numbers has no decimals") {
     CHECK(tools::format_column({12.0, 15026.0, 0.0}) == Texts{"12", "15026", "0"});
     CHECK(tools::format_column({0.0}) == Texts{"0"});

@@ -43,7 +43,6 @@ Report small_report() {
         {"tau2", "N·m", {5.0F, 6.0F, 7.0F, 8.0F}, {9.0F, 10.0F, 11.0F, 12.0F}, {0.0F, 0.0F, 0.0F, 0.0F}}};
     report.innovation = {{not_a_number, 1.0F, 2.0F, 400.0F}, 9.21, "99 %"};
     report.intervals = {{0.1, 0.2, "push"}};
-    report.marks = {{0.15, "event"}};
     report.recordings = {{0.0, 0.0, "a.csv"}, {0.2, 7.0, "b.csv"}};
     return report;
 }
@@ -115,10 +114,9 @@ TEST_CASE("the page contains the exact numbers of series and time and innovation
     CHECK(data["innovation"]["threshold_label"] == "99 %");
 }
 
-TEST_CASE("the page contains intervals and marks and recordings") {
+TEST_CASE("the page contains intervals and recordings") {
     const json data = data_of(tools::render_report(small_report()));
     CHECK(data["intervals"] == json::parse(R"([{"start_s": 0.1, "end_s": 0.2, "label": "push"}])"));
-    CHECK(data["marks"] == json::parse(R"([{"time_s": 0.15, "label": "event"}])"));
     CHECK(data["recordings"] == json::parse(R"([{"start_s": 0.0, "first_t_s": 0.0, "name": "a.csv"},
                                                 {"start_s": 0.2, "first_t_s": 7.0, "name": "b.csv"}])"));
 }
@@ -168,7 +166,6 @@ TEST_CASE("texts of a report are escaped in the page") {
         [](Report & r) -> auto& { return r.series[0].unit; },
         [](Report & r) -> auto& { return r.innovation->threshold_label; },
         [](Report & r) -> auto& { return r.intervals[0].label; },
-        [](Report & r) -> auto& { return r.marks[0].label; },
         [](Report & r) -> auto& { return r.recordings[0].name; });
     Report report = harmless;
     place(report) = hostile;
@@ -232,7 +229,6 @@ TEST_CASE("an inconsistent report is rejected with the name of the field") {
         {[](Report& r) { r.intervals[0].end_s = 0.05; }, "intervals[0]"},
         {[=](Report& r) { r.intervals[0].end_s = infinite; }, "intervals[0]"},
         {[=](Report& r) { r.intervals[0].start_s = -infinite; }, "intervals[0]"},
-        {[=](Report& r) { r.marks[0].time_s = infinite; }, "marks[0]"},
         {[](Report& r) { r.recordings[1].start_s = 0.0; }, "recordings[1]: expected a start after"},
         {[=](Report& r) { r.recordings[1].start_s = infinite; }, "recordings[1]: expected finite"},
         {[=](Report& r) { r.recordings[1].first_t_s = infinite; }, "recordings[1]: expected finite"},
@@ -256,43 +252,60 @@ TEST_CASE("a report of 15 000 ticks and 6 outputs stays below 3 MB") {
     CHECK(tools::render_report(report).size() < 3'000'000);
 }
 
-TEST_CASE("a report of a million ticks is thinned and keeps the extremes") {
+Report report_of(int ticks) {
     Report report;
-    for (int tick = 0; tick < 1'000'000; ++tick) {
+    for (int tick = 0; tick < ticks; ++tick) {
         report.time_s.push_back(0.001 * tick);
     }
+    return report;
+}
+
+TEST_CASE(
+    "a report of a million ticks is thinned and keeps the extremes of outputs, errors and innovations") {
+    Report report = report_of(1'000'000);
     const std::vector<float> values(report.time_s.size(), 1.0F);
     report.series.assign(2, {"i", "A", values, values, values});
     report.series[1].measured[345'678] = 7.0F;
     report.series[0].predicted[765'432] = -9.0F; // an extreme of the error alone
+    report.innovation = {values, 16.8, "99 %"};
+    report.innovation->normalised_squared[543'210] = 400.0F;
+    report.innovation->normalised_squared[543'211] = std::numeric_limits<float>::infinity();
     const std::string page = tools::render_report(report);
     CHECK(page.size() < 4'000'000);
-    CHECK_THAT(page, ContainsSubstring("of 1000000 ticks, among them all extremes"));
+    CHECK_THAT(page, ContainsSubstring(
+                         "of 1000000 ticks, among them the extremes of outputs, errors and innovations"));
     const json data = data_of(page);
     const auto time_s = numbers_in<double>(data["time_s"]);
     CHECK(time_s.size() <= tools::most_report_ticks);
     CHECK(time_s.size() > tools::most_report_ticks / 10);
-    const auto measured = numbers_in<float>(data["series"][1]["measured"]);
-    const auto predicted = numbers_in<float>(data["series"][0]["predicted"]);
-    CHECK(time_s.at(static_cast<std::size_t>(std::ranges::find(measured, 7.0F) - measured.begin())) ==
-          report.time_s[345'678]);
-    CHECK(time_s.at(static_cast<std::size_t>(std::ranges::find(predicted, -9.0F) - predicted.begin())) ==
-          report.time_s[765'432]);
+    const auto time_of = [&](const json& packed, float value) {
+        const auto numbers = numbers_in<float>(packed);
+        return time_s.at(static_cast<std::size_t>(std::ranges::find(numbers, value) - numbers.begin()));
+    };
+    CHECK(time_of(data["series"][1]["measured"], 7.0F) == report.time_s[345'678]);
+    CHECK(time_of(data["series"][0]["predicted"], -9.0F) == report.time_s[765'432]);
+    CHECK(time_of(data["innovation"]["normalised_squared"], 400.0F) == report.time_s[543'210]);
     CHECK(time_s.back() == report.time_s.back());
 }
 
 TEST_CASE("a thinned page links the table with all ticks and a complete page does not") {
-    Report report;
-    for (int tick = 0; tick < 70'000; ++tick) {
-        report.time_s.push_back(0.001 * tick);
-    }
+    Report report = report_of(70'000);
     report.full_data = "run 1 & 2.ticks.csv";
     CHECK_THAT(tools::render_report(report),
-               ContainsSubstring("of 70000 ticks, among them all extremes. All ticks are in <a "
-                                 "href=\"./run%201%20%26%202.ticks.csv\">run 1 &amp; "
+               ContainsSubstring("All ticks are in <a href=\"./run%201%20%26%202.ticks.csv\">run 1 &amp; "
                                  "2.ticks.csv</a>."));
     report.time_s.resize(60'000);
     CHECK(tools::render_report(report).find("ticks.csv") == std::string::npos);
+}
+
+TEST_CASE("a thinned page leaves out the figures of the part in view, because its ticks are extreme ones") {
+    const std::string reason = "Figures of the part in view need all ticks and are left out.";
+    const std::string thinned = tools::render_report(report_of(60'001));
+    CHECK(data_of(thinned)["thinned"] == true);
+    CHECK_THAT(thinned, ContainsSubstring(reason));
+    const std::string complete = tools::render_report(report_of(60'000));
+    CHECK(data_of(complete)["thinned"] == false);
+    CHECK(complete.find(reason) == std::string::npos);
 }
 
 TEST_CASE("a thinned page interrupts its curves at gaps and nowhere else") {

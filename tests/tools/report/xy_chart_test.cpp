@@ -33,6 +33,15 @@ TEST_CASE("a linear axis has margins and round labels") {
     CHECK(labels({123456, 123457}).size() >= 2);
 }
 
+TEST_CASE("a linear axis of any length has four to eleven labels") {
+    for (int tenths = 10; tenths <= 100; ++tenths) {
+        CAPTURE(tenths);
+        const std::size_t count = labels({0.95, 0.95 + 0.1 * tenths}).size();
+        CHECK(count >= 4);
+        CHECK(count <= 11);
+    }
+}
+
 TEST_CASE("an axis of one value or none or of infinities is valid") {
     const double infinite = std::numeric_limits<double>::infinity();
     for (const std::vector<double>& values : {std::vector<double>{}, {3}, {0, 0}, {infinite, std::nan("")}}) {

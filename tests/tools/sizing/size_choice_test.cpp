@@ -2,6 +2,7 @@
 #include "tools/sizing/size_choice.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tools/base/recording/row_parts.hpp"
 #include "tools/base/text/error.hpp"
 
 #include <algorithm>
@@ -64,23 +65,37 @@ TEST_CASE("the choice stays within the budget and a larger budget does not incre
     }
 }
 
-TEST_CASE("an output that does not change in one of the recordings leaves the error of the others") {
-    const std::vector<Recording> recordings{swinging(1500, 0.01), swinging(300, 0.01)};
+TrainedModel trained_on(const Recording& recording) {
     ModelTraining training;
     training.options.likelihood_rows = 80;
     training.options.evaluations_per_start = 30;
     training.options.feature_count = 16;
-    const TrainedModel model = train_model(prepare_training({recordings.data(), 1}, training),
-                                           OutputKind::joint_torque, training, {})
-                                   .model;
-    std::vector<Recording> judged = recordings;
-    const double alone = held_out_error(model, {judged.data(), 1});
-    REQUIRE(alone > 0);
-    REQUIRE(alone < 0.5);
-    std::ranges::fill(judged[1].output.values, 2.5);
-    CHECK(held_out_error(model, judged) == Approx(alone));
-    judged[1] = swinging(2, 0.01); // too short for a prediction: as good as a constant
-    CHECK(held_out_error(model, judged) == Approx((alone + 1) / 2));
+    return train_model(prepare_training({&recording, 1}, training), OutputKind::joint_torque, training, {})
+        .model;
+}
+
+TEST_CASE("every predicted row has the same weight in the held-out error, in recordings of any length") {
+    Recording whole = swinging(1500, 0.01);
+    const TrainedModel model = trained_on(whole);
+    for (const std::size_t cut : {std::size_t{1000}, std::size_t{1498}}) { // two rows give no prediction
+        CAPTURE(cut);
+        whole.gap_before.assign(1500, 0);
+        whole.gap_before[0] = whole.gap_before[cut] = 1;
+        const double error = held_out_error(model, {&whole, 1});
+        REQUIRE(error > 0);
+        REQUIRE(error < 0.5);
+        const std::vector<Recording> parts{rows_between(whole, 0, cut), rows_between(whole, cut, 1500)};
+        CHECK(held_out_error(model, parts) == Approx(error).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("an output without a prediction has the held-out error 1, one that never changes has none") {
+    const TrainedModel model = trained_on(swinging(1500, 0.01));
+    Recording judged = swinging(2, 0.01);
+    CHECK(held_out_error(model, {&judged, 1}) == 1);
+    judged = swinging(300, 0.01);
+    std::ranges::fill(judged.output.values, 2.5);
+    CHECK(std::isinf(held_out_error(model, {&judged, 1})));
 }
 
 TEST_CASE("equal data give equal choices") {

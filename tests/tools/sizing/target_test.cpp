@@ -56,6 +56,23 @@ TEST_CASE("an unknown core is rejected with the nearest known one") {
                                                   "\"cortex-m7\"?)"));
 }
 
+TEST_CASE("the printed bytes of a footprint are bounds: none is rounded down") {
+    const std::regex sizes("flash at most ([0-9.]+) KiB, RAM at most ([0-9.]+) KiB");
+    for (int columns = 20; columns <= 100; columns += 20) {
+        const TrainedModel model = benchmark_model(4, columns);
+        const ModelNeeds needs = needs_of(model);
+        std::ostringstream out;
+        print_footprint(out, model, targets().front());
+        const std::string text = out.str();
+        CAPTURE(text, needs.flash_bytes, needs.ram_bytes);
+        std::smatch found;
+        REQUIRE(std::regex_search(text, found, sizes));
+        CHECK(1024 * std::stod(found[1]) >= static_cast<double>(needs.flash_bytes));
+        CHECK(1024 * std::stod(found[2]) >= static_cast<double>(needs.ram_bytes));
+        CHECK(1024 * (std::stod(found[1]) - 0.101) < static_cast<double>(needs.flash_bytes));
+    }
+}
+
 TEST_CASE("smaller models are listed with their larger error, in text and in JSON") {
     TrainedModel model = benchmark_model(4, 100);
     std::ostringstream alone;

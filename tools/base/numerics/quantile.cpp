@@ -42,6 +42,11 @@ double quantile(std::vector<double> values, double share) {
                    share * static_cast<double>(values.size() - 1) - static_cast<double>(below));
 }
 
+double mean_square_quantile(std::size_t count, double normal_quantile) {
+    const double part = 2.0 / (9 * static_cast<double>(count));
+    return std::pow(1 - part + normal_quantile * std::sqrt(part), 3);
+}
+
 double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
 
 } // namespace dfdyn::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,11 @@ double quantile(std::vector<double> values, double share);
 
 /// Returns quantile(values, 0.5).
 double median(std::vector<double> values);
+
+/// Returns the quantile of the mean of `count` >= 1 squared independent standard normal values (chi-square /
+/// count) at the share below `normal_quantile` of a standard normal value, by the approximation of E. B.
+/// Wilson and M. M. Hilferty (1931): within 15 % of the smaller of share and 1 - share from 10 to 99.9 %.
+double mean_square_quantile(std::size_t count, double normal_quantile);
 
 /// Ratio of a Gaussian's standard deviation to the median of its magnitude.
 inline constexpr double median_to_deviation = 1.4826;

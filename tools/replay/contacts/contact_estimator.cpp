@@ -30,12 +30,13 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
     Tick tick(const MeasuredSample& sample, Budget budget) override {
         const Tick tick = estimator().tick(sample, informs() ? budget : Budget::predict_only());
         note(sample.time_ns, watch(sample, tick));
+        last_ns_ = sample.time_ns;
         return tick;
     }
     void begin_recording() override {
         estimator().begin_recording();
+        note(last_ns_, false); // without an end a contact would seem to last to the end of the recording
         watch_.interrupt();
-        during_ = false;
     }
     Cost cost() const override {
         Cost cost = estimator().cost();
@@ -70,9 +71,8 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
     }
 
     bool watch(const MeasuredSample& sample, const Tick& tick) {
-        if (!tick.status.predicted() || sample.output.empty()) {
-            watch_.interrupt();
-            return false;
+        if (!tick.status.estimated() || sample.output.empty()) {
+            return watch_.skip(sample.time_ns);
         }
         std::ranges::transform(sample.position, position_.begin(),
                                [](double x) { return static_cast<float>(x); });
@@ -100,6 +100,7 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
     std::vector<float> position_, error_;
     std::vector<DetectedContact> contacts_;
     std::size_t count_ = 0; ///< of all contacts, including removed ones
+    std::int64_t last_ns_ = 0;
     bool during_ = false;
 };
 

@@ -18,7 +18,7 @@ namespace dfdyn::tools {
 /// A contact on the clock of the samples.
 struct DetectedContact {
     std::int64_t start_ns = 0;
-    std::int64_t end_ns = 0; ///< 0: it did not end
+    std::int64_t end_ns = 0; ///< at a gap: the last sample before it; 0: the recording ended before
     int joint = 0;           ///< from 0: the largest deviation in units of its limit at the start
     double peak = 0;         ///< largest deviation of this joint, with its sign, in the output's unit
     bool persistent = false; ///< it did not end, and counts as a change of the arm
@@ -37,6 +37,11 @@ class ContactWatch {
     bool tick(std::int64_t time_ns, std::span<const float> position, std::span<const float> error,
               std::span<const float> prediction) {
         return detector_.tick(time_ns, position.data(), error.data(), prediction.data());
+    }
+    /// Registers a tick without a prediction or a measurement. Returns true during a contact.
+    bool skip(std::int64_t time_ns) {
+        detector_.skip(time_ns);
+        return detector_.contact();
     }
     void interrupt() { detector_.interrupt(); }
     const Detector& detector() const { return detector_; }

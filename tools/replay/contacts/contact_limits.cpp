@@ -62,8 +62,8 @@ void predict_rows(RuntimeEstimator& estimator, std::span<const Recording> record
     bool follows = false;
     tick_rows(estimator, recordings, first, last, Budget::predict_only(),
               [&](const MeasuredSample& sample, const Tick& tick, bool begins) {
-                  follows = follows && !begins && tick.status.predicted();
-                  if (tick.status.predicted()) {
+                  follows = follows && !begins && tick.status.estimated();
+                  if (tick.status.estimated()) { // as in the firmware, also at the model's bound
                       predicted.push_back({pass,
                                            sample.time_ns,
                                            !follows,
@@ -232,56 +232,68 @@ void add_joint(ContactModel& contact, const Deviations& deviations, double least
     contact.acceleration.push_back(largest_usual(&Deviation::acceleration) + acceleration_allowance);
 }
 
+/// Largest excesses of intervals of at most a second. A gap ends an interval early.
+struct ExcessPeaks {
+    std::vector<double> sizes;
+    double covered_s = 0; ///< duration of all intervals
+};
+
+using PassPeaks = std::array<ExcessPeaks, block_count + 1>;
+
 /// Returns the largest excess of each second, in each pass.
-std::array<std::vector<double>, block_count + 1> excess_peaks(std::span<const PredictedRow> rows,
-                                                              const ContactModel& contact) {
-    std::array<std::vector<double>, block_count + 1> peaks;
+PassPeaks excess_peaks(std::span<const PredictedRow> rows, const ContactModel& contact, double period_s) {
+    PassPeaks peaks;
     std::int64_t begin_ns = 0;
+    std::int64_t before_ns = 0;
     detect(rows, scaled_contact(contact, out_of_reach),
            [&](const PredictedRow& row, const ContactWatch::Detector& detector) {
-               std::vector<double>& now = peaks[row.pass];
-               if (now.empty() || row.begins || row.time_ns - begin_ns >= peak_interval_ns) {
-                   now.push_back(0);
+               ExcessPeaks& now = peaks[row.pass];
+               if (row.begins || row.time_ns - begin_ns >= peak_interval_ns) {
+                   now.sizes.push_back(0);
                    begin_ns = row.time_ns;
                }
-               now.back() = std::max(now.back(), out_of_reach * static_cast<double>(detector.excess()));
+               now.covered_s += row.begins ? period_s : 1e-9 * static_cast<double>(row.time_ns - before_ns);
+               before_ns = row.time_ns;
+               double& largest = now.sizes.back();
+               largest = std::max(largest, out_of_reach * static_cast<double>(detector.excess()));
            });
     return peaks;
 }
 
 /// Returns the peaks of the trained model's pass and of all others with enough of them, in descending order.
 /// Those of passes with a larger median than the trained model and half of the passes are scaled to it.
-std::vector<double> comparable_peaks(const std::array<std::vector<double>, block_count + 1>& passes) {
+ExcessPeaks comparable_peaks(const PassPeaks& passes) {
     std::vector<std::span<const double>> counted;
     std::vector<double> medians;
-    for (const std::vector<double>& pass : passes) {
-        if (pass.size() >= fewest_peaks || &pass == &passes.back()) {
-            counted.emplace_back(pass);
-            medians.push_back(pass.empty() ? 0 : median(pass));
+    ExcessPeaks peaks;
+    for (const ExcessPeaks& pass : passes) {
+        if (pass.sizes.size() >= fewest_peaks || &pass == &passes.back()) {
+            counted.emplace_back(pass.sizes);
+            medians.push_back(pass.sizes.empty() ? 0 : median(pass.sizes));
+            peaks.covered_s += pass.covered_s;
         }
     }
     const double usual = std::max(median(medians), medians.back());
-    std::vector<double> peaks;
     for (std::size_t i = 0; i < counted.size(); ++i) {
         const double factor = medians[i] > usual ? usual / medians[i] : 1;
-        std::ranges::transform(counted[i], std::back_inserter(peaks),
+        std::ranges::transform(counted[i], std::back_inserter(peaks.sizes),
                                [factor](double peak) { return factor * peak; });
     }
-    std::ranges::sort(peaks, std::greater{});
+    std::ranges::sort(peaks.sizes, std::greater{});
     return peaks;
 }
 
 /// Returns the factor from the mean of `count` exponential values to the upper 90 % confidence limit of the
-/// mean, by the approximation of Wilson and Hilferty (1931).
+/// mean.
 double upper_mean(std::size_t count) {
-    constexpr double deviation = 1.2816; // of the normal distribution's 10 % quantile
-    const double part = 1.0 / (9 * static_cast<double>(count));
-    return std::pow(1 - part - deviation * std::sqrt(part), -3);
+    constexpr double normal_quantile = -1.2816;                  // 10 %
+    return 1 / mean_square_quantile(2 * count, normal_quantile); // an exponential value is two squares
 }
 
 /// Sets the limits to those that are exceeded at most `contact_rate_per_hour` times on average. The largest
 /// tenth of the peaks has an exponential tail. With few peaks its mean is uncertain.
-void set_rate(ContactModel& contact, const std::vector<double>& peaks) {
+void set_rate(ContactModel& contact, const ExcessPeaks& all) {
+    const std::vector<double>& peaks = all.sizes;
     const std::size_t tail = std::max(std::min(peaks.size() / 2, least_tail), peaks.size() / tail_part);
     if (tail == 0) {
         return;
@@ -292,7 +304,7 @@ void set_rate(ContactModel& contact, const std::vector<double>& peaks) {
         mean += (peaks[i] - threshold) / static_cast<double>(tail);
     }
     mean *= tail < least_tail ? upper_mean(tail) : 1;
-    const double per_hour = hour_s * static_cast<double>(tail) / static_cast<double>(peaks.size());
+    const double per_hour = hour_s * static_cast<double>(tail) / all.covered_s;
     const double level = std::max(threshold + mean * std::log(per_hour / contact_rate_per_hour), 1.0);
     contact = scaled_contact(contact, new_motion_factor * level);
     contact.rate_slope = std::max(mean / level, least_rate_slope);
@@ -307,7 +319,7 @@ ContactModel measure_contact_limits(const TrainedModel& model, std::span<const R
     for (std::size_t k = 0; k < deviations.size(); ++k) {
         add_joint(contact, deviations[k], least_limit * model.outputs.noise_std[k]);
     }
-    set_rate(contact, comparable_peaks(excess_peaks(rows, contact)));
+    set_rate(contact, comparable_peaks(excess_peaks(rows, contact, model.sample_period_s)));
     return contact;
 }
 

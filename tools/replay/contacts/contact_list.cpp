@@ -2,6 +2,7 @@
 #include "tools/replay/contacts/contact_list.hpp"
 
 #include "tools/base/text/number.hpp"
+#include "tools/monitor/recorded_time.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -13,24 +14,20 @@ namespace {
 
 using nlohmann::ordered_json;
 
-double seconds_of(const RecordedContacts& recorded, std::int64_t time_ns) {
-    return recorded.origin_s + 1e-9 * static_cast<double>(time_ns);
-}
-
 const std::string& output_of(const DetectedContact& contact, std::span<const std::string> outputs) {
     return outputs[static_cast<std::size_t>(contact.joint)];
 }
 
 ordered_json contact_json(const RecordedContacts& recorded, const DetectedContact& contact,
                           std::span<const std::string> outputs) {
-    ordered_json result{{"start", seconds_of(recorded, contact.start_ns)},
+    ordered_json result{{"start", recorded_time_s(recorded.origin_s, contact.start_ns)},
                         {"end", nullptr},
                         {"joint", contact.joint + 1},
                         {"output", output_of(contact, outputs)},
                         {"peak", contact.peak},
                         {"persistent", contact.persistent}};
     if (contact.end_ns != 0) {
-        result["end"] = seconds_of(recorded, contact.end_ns);
+        result["end"] = recorded_time_s(recorded.origin_s, contact.end_ns);
     }
     return result;
 }
@@ -41,9 +38,9 @@ void print_contacts(std::ostream& out, const RecordedContacts& recorded,
                     std::span<const std::string> outputs) {
     for (const DetectedContact& contact : recorded.contacts) {
         out << recorded.recording << ": contact at joint " << contact.joint + 1 << " from "
-            << formatted("%.2f", seconds_of(recorded, contact.start_ns));
+            << formatted("%.2f", recorded_time_s(recorded.origin_s, contact.start_ns));
         if (contact.end_ns != 0) {
-            out << " to " << formatted("%.2f", seconds_of(recorded, contact.end_ns));
+            out << " to " << formatted("%.2f", recorded_time_s(recorded.origin_s, contact.end_ns));
         }
         out << " s, " << output_of(contact, outputs) << " deviates by " << rounded_text(contact.peak)
             << (contact.persistent ? "; it did not end: a change of the arm" : "") << '\n';

@@ -26,18 +26,6 @@ double normalised_error_of(const Forecasts& forecasts, const ReplayedRecording& 
 
 } // namespace
 
-void OutputError::add(double measured, double forecast) {
-    if (std::isfinite(measured) && std::isfinite(forecast)) {
-        count_ += 1;
-        const double difference = measured - mean_;
-        mean_ += difference / count_;
-        variation_ += difference * (measured - mean_);
-        error_square_ += (measured - forecast) * (measured - forecast);
-    }
-}
-
-double OutputError::normalised() const { return std::sqrt(error_square_ / variation_); }
-
 Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedModel& model) {
     const std::size_t outputs = model.outputs.names.size();
     const std::vector<float> noise(model.outputs.noise_std.begin(), model.outputs.noise_std.end());

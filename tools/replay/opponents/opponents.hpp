@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/replay/output_error.hpp"
 #include "tools/replay/replay.hpp"
 
 #include <span>
@@ -22,28 +23,13 @@ Forecasts persistence(const ReplayedRecording& replayed, std::size_t outputs);
 Forecasts autoregression(const ReplayedRecording& replayed, std::size_t outputs);
 
 /// The model with the firmware's residual state (dfdyn::ColouredResidual) and a memory of
-/// `residual_memory_s`, learned online over the recording. `noise_std`: m values of the model.
+/// `residual_memory_s`, learned online over the recording, in units of the model's `noise_std`.
 Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedModel& model);
 
 /// Memory of the state (s). It was chosen on UR5 No5 and No6 and XL330 00, 02, 03, 04 and 06. There all
 /// memories from 0.16 s to 8 s are better than persistence and AR(2), shorter ones by a larger margin. This
 /// value provides enough samples for four coefficients at 50 Hz.
 inline constexpr double residual_memory_s = 0.8;
-
-/// Accumulates the errors of one output's forecasts.
-class OutputError {
-  public:
-    /// Adds a pair; pairs with a value that is not finite are ignored.
-    void add(double measured, double forecast);
-    /// rms(measured - forecast) / std(measured); NaN without values.
-    double normalised() const;
-
-  private:
-    double count_ = 0;
-    double mean_ = 0;         ///< of the measured values
-    double variation_ = 0;    ///< sum of their squared differences from the mean
-    double error_square_ = 0; ///< sum
-};
 
 /// Errors of an alternative to a model: a label and the nRMSE of each output, over the measured ticks with a
 /// model prediction; NaN if there are none.

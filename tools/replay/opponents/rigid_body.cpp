@@ -102,7 +102,7 @@ struct ReducedRows {
 };
 
 ReducedRows reduce_rows(MotionColumns& columns, std::span<const Recording> recordings) {
-    const std::size_t total = total_rows(recordings);
+    const std::size_t every = (total_rows(recordings) + most_fitted_rows - 1) / most_fitted_rows;
     const Index width = columns.inertial() + friction_terms;
     std::vector<TriangularFactor> factors(static_cast<std::size_t>(columns.outputs()),
                                           TriangularFactor(width + 1));
@@ -111,7 +111,7 @@ ReducedRows reduce_rows(MotionColumns& columns, std::span<const Recording> recor
     Eigen::RowVectorXd line(width + 1);
     for (const Recording& recording : recordings) {
         const SampledMotion sampled = sampled_motion(recording, rigid_body_window(recordings));
-        for (std::size_t row = 0; row < sampled.valid.size(); row += total / most_fitted_rows + 1) {
+        for (std::size_t row = 0; row < sampled.valid.size(); row += every) {
             if (sampled.valid[row] == 0) {
                 continue;
             }

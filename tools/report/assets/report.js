@@ -96,7 +96,7 @@ class Page {
                 show_number(output.predicted[row], decimals) + (margin && ` ± ${margin}`);
             error.value.textContent = show_number(output.error[row], decimals);
         });
-        this.summaries.push(rows => show_figures(figures, error_figures(output, rows, decimals)));
+        this.add_summary(figures, rows => error_figures(output, rows, decimals));
     }
 
     add_innovation(innovation) {
@@ -109,7 +109,14 @@ class Page {
         const { block, figures } = this.add_block("Innovation", "", [value, limit]);
         this.add_chart(innovation_chart(this, innovation), block);
         this.readers.push(row => (value.value.textContent = innovation.values[row]?.toPrecision(3) ?? ""));
-        this.summaries.push(rows => show_figures(figures, innovation_figures(innovation, rows)));
+        this.add_summary(figures, rows => innovation_figures(innovation, rows));
+    }
+
+    // Shows the figures of the rows in view. The rows of a thinned page are extreme: they have no such figures.
+    add_summary(node, figures_of) {
+        if (!this.report.thinned) {
+            this.summaries.push(rows => show_figures(node, figures_of(rows)));
+        }
     }
 
     // Shows the values of `row` (null: the cursor is on no chart) in all legends.

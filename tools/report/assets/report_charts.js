@@ -23,7 +23,6 @@ function read_theme(theme) {
         "interval",
         "interval-edge",
         "interval-text",
-        "mark",
         "boundary",
     ]) {
         theme[name.replace("-", "_")] = style.getPropertyValue("--" + name).trim();
@@ -87,10 +86,15 @@ function error_limits(output, rows) {
     return [-1.2 * furthest || -1, 1.2 * furthest || 1];
 }
 
+// Includes the threshold, unless it is so far above all values that they would not be seen: a threshold that was
+// never calibrated is 1e30.
 function innovation_limits(innovation, rows) {
     const values = sorted_numbers(innovation.values, rows);
-    const max = Math.max(extremes(innovation.values, rows)[1], 3 * innovation.threshold);
-    const min = Math.min(quantile(values, 0.005) || Infinity, innovation.threshold / 10);
+    const largest = extremes(innovation.values, rows)[1];
+    const { threshold } = innovation;
+    const far = largest > 0 && threshold > 1e6 * largest;
+    const max = Math.max(largest, far ? 0 : 3 * threshold);
+    const min = Math.min(quantile(values, 0.005) || Infinity, far ? largest / 10 : threshold / 10);
     return uPlot.rangeLog(Math.max(min, 1e-6 * max), max, 10, false);
 }
 

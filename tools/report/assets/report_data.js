@@ -73,10 +73,10 @@ function decode_report(text) {
     return {
         time: insert_at_breaks(time, breaks, row => (time[row - 1] + time[row]) / 2),
         sample_time: packed.sample_time_s,
+        thinned: packed.thinned, // the rows are chosen for their extremes
         outputs: packed.series.map(series => decode_output(series, decode)),
         innovation: packed.innovation === null ? null : decode_innovation(packed.innovation, decode),
         intervals: packed.intervals,
-        marks: packed.marks,
         recordings: packed.recordings,
     };
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Drawings on the charts in addition to their lines: recordings, intervals, marks, the threshold. Positions are
-// in pixels of the canvas.
+// Drawings on the charts in addition to their lines: recordings, intervals, the threshold. Positions are in pixels
+// of the canvas.
 
 const lane_height = 20; // of one row of labels above a plot, in CSS pixels
 const label_gap = 10;
@@ -10,7 +10,7 @@ const label_gap = 10;
 function label_lanes(report) {
     return {
         recordings: report.recordings.length > 1,
-        annotations: report.intervals.length + report.marks.length > 0,
+        annotations: report.intervals.length > 0,
     };
 }
 
@@ -32,7 +32,7 @@ function in_view(chart, start, end) {
     return start <= chart.scales.x.max && end >= chart.scales.x.min;
 }
 
-function vertical_line(chart, t, colour, dash) {
+function vertical_line(chart, t, colour) {
     if (!in_view(chart, t, t)) {
         return;
     }
@@ -40,7 +40,7 @@ function vertical_line(chart, t, colour, dash) {
     const x = Math.round(clamped_position(chart, t)) + 0.5;
     ctx.strokeStyle = colour;
     ctx.lineWidth = uPlot.pxRatio;
-    ctx.setLineDash(dash.map(length => length * uPlot.pxRatio));
+    ctx.setLineDash([]);
     ctx.beginPath();
     ctx.moveTo(x, bbox.top);
     ctx.lineTo(x, bbox.top + bbox.height);
@@ -59,14 +59,13 @@ function draw_intervals(chart, report, theme) {
     }
 }
 
-// Below the chart's lines: shaded intervals, marks, and where recordings begin.
+// Below the chart's lines: shaded intervals, and where recordings begin.
 function draw_background(chart, report, theme) {
     chart.ctx.save();
     draw_intervals(chart, report, theme);
-    report.marks.forEach(mark => vertical_line(chart, mark.time_s, theme.mark, [4, 4]));
     report.recordings
         .slice(1)
-        .forEach(recording => vertical_line(chart, recording.start_s, theme.boundary, []));
+        .forEach(recording => vertical_line(chart, recording.start_s, theme.boundary));
     chart.ctx.restore();
 }
 
@@ -117,18 +116,6 @@ function draw_interval_bar(chart, interval, theme) {
     chart.ctx.fillRect(left, chart.bbox.top - 3 * uPlot.pxRatio, width, 3 * uPlot.pxRatio);
 }
 
-function draw_mark_head(chart, mark, theme) {
-    const { ctx, bbox } = chart;
-    const x = clamped_position(chart, mark.time_s);
-    const size = 4 * uPlot.pxRatio;
-    ctx.fillStyle = theme.mark;
-    ctx.beginPath();
-    ctx.moveTo(x - size, bbox.top - size);
-    ctx.lineTo(x + size, bbox.top - size);
-    ctx.lineTo(x, bbox.top + size / 2);
-    ctx.fill();
-}
-
 function draw_annotation_labels(chart, report, theme, y) {
     const taken = [];
     for (const interval of report.intervals.filter(each => in_view(chart, each.start_s, each.end_s))) {
@@ -136,11 +123,6 @@ function draw_annotation_labels(chart, report, theme, y) {
         chart.ctx.fillStyle = theme.interval_text;
         const [from, to] = [interval.start_s, interval.end_s].map(t => clamped_position(chart, t));
         place_label(chart, interval.label, from, to, y, taken);
-    }
-    for (const mark of report.marks.filter(each => in_view(chart, each.time_s, each.time_s))) {
-        draw_mark_head(chart, mark, theme);
-        const x = clamped_position(chart, mark.time_s);
-        place_label(chart, mark.label, x, x, y, taken);
     }
 }
 

@@ -24,6 +24,23 @@ TEST_CASE("quantiles of a few values are the values themselves or interpolated b
     CHECK(std::isnan(tools::median({})));
 }
 
+TEST_CASE("the mean of squared normal values exceeds its quantiles with the stated probability") {
+    const auto half = GENERATE(1, 2, 3, 6, 20); // of an even number of squares: a sum of exponential values
+    CAPTURE(half);
+    for (const auto& [normal_quantile, share] : {std::pair(-1.2816, 0.1), {0.0, 0.5}, {3.0902, 0.999}}) {
+        CAPTURE(share);
+        const double sum =
+            half * tools::mean_square_quantile(2 * static_cast<std::size_t>(half), normal_quantile);
+        double term = std::exp(-sum);
+        double above = 0;
+        for (int k = 0; k < half; ++k) {
+            above += term;
+            term *= sum / (k + 1);
+        }
+        CHECK(std::abs(above - (1 - share)) < 0.15 * std::min(share, 1 - share));
+    }
+}
+
 TEST_CASE("quantiles are independent of order and increase with the share and mirror with the sign") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto count = GENERATE(range(std::size_t{1}, std::size_t{12}));
