@@ -46,9 +46,9 @@ FAULTS = {
     "3 late ticks": [late(3)],
     "1 % of the frames, from the start for 12 s": [frames(0.01)],
     "5 %": [frames(0.05)],
-    "clock + 4 ms": [clock(0.004)],
-    "clock − 4 ms": [clock(-0.004)],
-    "clock ± 20 ms, ± 100 ms, ± 1 s": [clock(sign * by) for by in (0.02, 0.1, 1) for sign in (1, -1)],
+    "the computer's clock + 4 ms": [clock(0.004)],
+    "− 4 ms": [clock(-0.004)],
+    "± 20 ms, ± 100 ms, ± 1 s": [clock(sign * by) for by in (0.02, 0.1, 1) for sign in (1, -1)],
 }
 
 

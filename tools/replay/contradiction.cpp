@@ -67,13 +67,12 @@ std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
     model.limits.innovation = no_limit; // while the innovations are measured
     model.limits.innovation_patience = static_cast<int>(std::ceil(patience_s / model.sample_period_s));
-    double ordinary = 0;
+    const std::size_t outputs = model.outputs.names.size();
+    double ordinary = static_cast<double>(outputs) * mean_square_quantile(outputs, normal_quantile);
     for (const std::vector<double>& half : innovations_of_halves(model, recordings, from_prior)) {
         ordinary = half.empty() ? no_limit : std::max(ordinary, quantile(half, ordinary_share));
     }
-    const std::size_t outputs = model.outputs.names.size();
-    const double of_noise = static_cast<double>(outputs) * mean_square_quantile(outputs, normal_quantile);
-    model.limits.innovation = std::min(std::max(margin * ordinary, of_noise), no_limit);
+    model.limits.innovation = std::min(margin * ordinary, no_limit);
 }
 
 } // namespace dfdyn::tools

@@ -23,11 +23,11 @@ std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed
 
 /// Sets the model's limit of the normalised innovation squared from its training rows. Two-fold
 /// cross-validation: an estimator that has learned one half of the rows evaluates the other half. It starts
-/// from the prior or (`from_prior` false) from the model's initial state. The limit is three times the larger
-/// of the halves' 99.9 % quantiles of the innovations, and at least the chi-square quantile, which noise
-/// alone reaches: the halves of a short recording may not show how far the next motion is from both. That
-/// quantile alone would reject good samples, because real residuals are neither white nor Gaussian. The
-/// patience is set to 1.5 s. Cost: two ticks per row.
+/// from the prior or (`from_prior` false) from the model's initial state. The limit is three times the
+/// largest of the halves' 99.9 % quantiles of the innovations and of the chi-square quantile. The latter
+/// alone would reject good samples, because real residuals are neither white nor Gaussian. Without it the
+/// halves of a short recording may not show how far the next motion is from both. The patience is set to 1.5
+/// s. Cost: two ticks per row.
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings,
                                 bool from_prior = true);
 
