@@ -80,7 +80,8 @@ class DelayLine {
 /// measurement is compared with the reference, and learned with the effort, of its own time.
 ///
 /// The *correction* is the sum of feedback and observer. It changes by at most `kick_share` of the limit per
-/// tick, so that a wrong reading, a late tick or a step of the reference makes no kick. A joint without a new
+/// tick, so that a wrong reading or a late tick makes no kick. An error that lasts takes it to the limit
+/// within ten ticks: let the arm be at the reference before the brakes open. A joint without a new
 /// measurement (NaN, or a stamp that does not advance) keeps its correction for `hold_ticks`. Then the
 /// correction ramps to zero. When measurements return it ramps to its new value. A ramp changes by
 /// `step_share` of the limit per tick. The controller does not stop the arm: stop it if
@@ -118,8 +119,8 @@ class DelayedJointController {
 
     /// Gains and limits of the loop, the same for all joints for brevity.
     struct Gains {
-        float position;  ///< A/rad, > 0
-        float velocity;  ///< A·s/rad, > 0
+        float position;  ///< A/rad, ≥ 0
+        float velocity;  ///< A·s/rad, ≥ 0
         float inertia;   ///< A·s²/rad, ≥ 0, approximate; 0 if unknown
         float limit;     ///< A, > 0
         float bandwidth; ///< of the observer, rad/s, ≥ 0, below 1 / period; see dfdyn::LoopMargin
@@ -154,6 +155,7 @@ class DelayedJointController {
         effort_ = effort_then_ = excess_ = correction_ = all(0);
         references_.fill({state.position, all(0), all(0)}); // at rest until now
         efforts_.fill(effort_);
+        applied_.fill(true);
         clock_.restart(state.time_ns);
         missed_ = {};
         recovering_ = {};
@@ -216,13 +218,14 @@ class DelayedJointController {
     /// Computes the corrections. `reference`: at the time of the measurement. Returns true if every joint has
     /// a new measurement.
     bool correct(const State& state, const Reference& reference, bool applied) {
-        const bool advanced = clock_.advances(state.time_ns);
+        const bool acted = applied_.pass(applied); // at the time of the measurement
+        const bool advanced = clock_.advances(state.time_ns) && applied && acted;
         Efforts error_rate, feedback, observed;
         for (int k = 0; k < joints; ++k) {
             error_rate[k] = reference.velocity[k] - state.velocity[k];
             feedback[k] = gains_.position * (reference.position[k] - state.position[k]) +
                           gains_.velocity * error_rate[k];
-            const bool measured = advanced && applied && std::isfinite(feedback[k]);
+            const bool measured = advanced && std::isfinite(feedback[k]);
             missed_[k] = measured ? 0 : std::min(missed_[k] + 1, most_missed);
             // limited like the effort: one wrong reading must not throw the observer to its limit
             observed[k] = measured ? std::clamp(feedback[k], -gains_.limit, gains_.limit) : unknown;
@@ -268,6 +271,7 @@ class DelayedJointController {
     Efforts wanted_{}, correction_{}; // of feedback and observer: without and with the limits
     DelayLine<Reference, delay_ticks> references_;
     DelayLine<Efforts, delay_ticks> efforts_;
+    DelayLine<bool, delay_ticks> applied_;
     StampClock clock_;
     dfdyn::Storage<int, joints> missed_{};      // ticks since the last measurement
     dfdyn::Storage<bool, joints> recovering_{}; // the correction is limited in its rate

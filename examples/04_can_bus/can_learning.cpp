@@ -114,16 +114,20 @@ Statistics statistics;
 constexpr std::uint32_t interrupts_before_save = 150;
 volatile bool ended;
 
+constexpr std::uint32_t erased = 0xFFFF'FFFF; ///< as flash memory reads after an erasure
+
 /// A place for a snapshot in flash memory. Its number is erased first and written last, so that a place with
 /// a number has a whole snapshot, also after a power failure.
 struct Place {
     std::array<std::byte, Estimator::snapshot_capacity> snapshot; ///< pages are appended
-    std::uint32_t number; ///< of the save, from 1; 0: there is no snapshot
+    std::uint32_t number = erased;                                ///< of the save, from 0
+
+    std::uint32_t saves() const { return number + 1; } ///< 0: there is no snapshot
 };
 std::array<Place, 2> flash; ///< written in turn: the last good snapshot is never overwritten
 
-Place& older() { return flash[0].number <= flash[1].number ? flash[0] : flash[1]; }
-Place& newer() { return flash[0].number <= flash[1].number ? flash[1] : flash[0]; }
+Place& older() { return flash[0].saves() <= flash[1].saves() ? flash[0] : flash[1]; }
+Place& newer() { return flash[0].saves() <= flash[1].saves() ? flash[1] : flash[0]; }
 
 void learn(std::int64_t instant_ns) {
     const auto [sample, report] = assembly.assemble(instant_ns, mailbox.now_ns());
@@ -148,25 +152,27 @@ void end_of_interrupt() {
 /// Saves the learned state page by page, while the interrupt keeps ticking and predicting.
 void save() {
     constexpr std::size_t page_bytes = 256;
-    const std::uint32_t number = newer().number + 1;
+    const std::uint32_t number = newer().saves();
     Place& place = older();
-    place.number = 0;
+    place.number = erased;
     dfdyn::SnapshotWriter writer(estimator);
     while (writer.step(place.snapshot, page_bytes) == dfdyn::SnapshotResult::in_progress) {
         asm volatile("wfi" ::: "memory"); // other work of the idle loop goes here
     }
     const bool whole = writer.result() == dfdyn::SnapshotResult::ok;
-    place.number = whole ? number : 0;
+    place.number = whole ? number : erased;
     (whole ? statistics.saved : statistics.refused) += 1;
 }
 
-/// Restores the newest good snapshot: a damaged one is refused whole, and the one before it is used. Call it
-/// before the first tick. Returns false if there is none, as at the very first start.
+/// Restores the newest good snapshot: a damaged one is refused whole, and the one before it is used. The
+/// damaged one's place is then written next. Call it before the first tick. Returns false if there is none,
+/// as at the very first start.
 bool restore() {
-    for (const Place* const place : {&newer(), &older()}) {
-        if (place->number != 0 && estimator.restore(place->snapshot) == dfdyn::SnapshotResult::ok) {
+    for (Place* const place : {&newer(), &older()}) {
+        if (place->number != erased && estimator.restore(place->snapshot) == dfdyn::SnapshotResult::ok) {
             return true;
         }
+        place->number = erased;
     }
     return false;
 }
@@ -174,9 +180,12 @@ bool restore() {
 /// Returns whether the next start finds what was learned, also if the newest snapshot is damaged.
 bool survives_restart() {
     save(); // before the power is switched off
-    const bool restored = statistics.refused == 0 && restore();
-    newer().snapshot[100] ^= std::byte{1};
-    return restored && restore();
+    Place& newest = newer();
+    estimator.reset();
+    const bool restored = statistics.refused == 0 && restore() && newest.number != erased;
+    newest.snapshot[100] ^= std::byte{1};
+    estimator.reset();
+    return restored && restore() && newest.number == erased;
 }
 
 bool learned_well() {

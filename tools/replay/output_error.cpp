@@ -2,6 +2,7 @@
 #include "tools/replay/output_error.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace dfdyn::tools {
 
@@ -15,6 +16,9 @@ void OutputError::add(double measured, double forecast) {
     }
 }
 
-double OutputError::normalised() const { return std::sqrt(error_square_ / variation_); }
+double OutputError::normalised() const {
+    const bool constant = count_ > 0 && variation_ == 0; // also if the forecast is exact
+    return constant ? std::numeric_limits<double>::infinity() : std::sqrt(error_square_ / variation_);
+}
 
 } // namespace dfdyn::tools

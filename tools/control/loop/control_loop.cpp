@@ -145,16 +145,17 @@ void ControlLoop::follow() {
 }
 
 void ControlLoop::learn() {
+    sample_age_ = learnable_ago_.value_or(sample_age_);
     const int ago = learnable_ago_.value_or(0);
     const std::int64_t at = static_cast<std::int64_t>(tick_) - ago;
-    const bool fresh = at > learned_tick_;
-    // a lost cycle is bridged: otherwise forecasts and contacts would be missing for the length of the window
-    const bool bridged = fresh && !learnable_ago_ && feedback_.known();
+    const bool fresh = at > passed_tick_ || config_.knot_ticks > 1; // with knots no stamp is taken twice
+    // a lost cycle is bridged: otherwise learning and contacts would pause for the length of the window
+    const bool bridged = fresh && !learnable_ago_ && sample_age_ == 0 && feedback_.known();
     const JointVector position =
         bridged ? JointVector(measured_reference().position - feedback_.error()) : feedback_.position();
     const bool measured = bridged || (fresh && learnable_ago_);
     const Sent* const then = command_then(ago);
-    learned_tick_ = measured ? at : learned_tick_;
+    passed_tick_ = measured ? at : passed_tick_;
     feed_forward_.measured(start_ns_ + std::llround(static_cast<double>(at) * config_.period_s * 1e9),
                            measured ? &position : nullptr, then != nullptr ? &then->torque : nullptr,
                            !bridged && then != nullptr && then->full);

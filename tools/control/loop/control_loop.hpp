@@ -196,7 +196,7 @@ class ControlLoop {
     void brake();
     void request_brakes();
     bool brakes_closed() const noexcept;
-    /// Returns whether the torque goes to zero for good: the brakes have closed and the loop ends.
+    /// Returns whether the torque shall go to zero for good: the brakes have closed and the loop ends.
     bool releases() const noexcept;
     /// Limits the command. Returns whether it was beyond its limit.
     bool limit();
@@ -215,7 +215,8 @@ class ControlLoop {
     std::vector<Reference> references_; ///< ring: from the oldest measurement in use to this tick
     std::vector<Sent> commands_;        ///< ring over the same ticks
     std::size_t tick_ = 0;              ///< number in the motion
-    std::int64_t learned_tick_ = -1;    ///< of the last sample that the learner received
+    std::int64_t passed_tick_ = -1;     ///< of the last position that the learner was offered
+    int sample_age_ = 0;                ///< ticks from the last regular sample to its tick
     std::int64_t start_ns_ = 0;         ///< measurement time of its first tick, on the loop's grid
     Observer observer_;
     JointVector zero_, error_, command_;
@@ -230,6 +231,7 @@ class ControlLoop {
     std::vector<bool> blind_; ///< joints that brake without readings
     std::optional<std::uint64_t> stopped_tick_, brake_tick_;
     std::uint64_t position_tick_ = 0; ///< tick of the last sample
+    bool released_ = false;           ///< the torque goes to zero for good
     bool told_ = false;               ///< a stop was requested
     bool touched_ = false;            ///< a contact has ended the motion
     bool yields_ = false;             ///< the arm may be pushed

@@ -22,7 +22,8 @@ bool opposed(StopCause cause, const std::optional<TakenAction>& stop) {
 
 void ControlLoop::hold() {
     request_brakes();
-    command_ = slowly(releases() ? zero_ : holding_torque());
+    released_ = released_ || releases();
+    command_ = slowly(released_ ? zero_ : holding_torque());
 }
 
 void ControlLoop::begin_braking(Eigen::Index joint) {
@@ -114,7 +115,7 @@ bool ControlLoop::releases() const noexcept {
 }
 
 bool ControlLoop::done() const noexcept {
-    return state() == LoopState::stopped && (!moved() || (releases() && command_.isZero(0)));
+    return state() == LoopState::stopped && (!moved() || (released_ && command_.isZero(0)));
 }
 
 } // namespace dfdyn::tools

@@ -124,7 +124,7 @@ void LearnedFeedForward::learn(std::int64_t time_ns, const double* position, con
     counters_.samples += torque != nullptr && may_learn_ ? 1 : 0;
     if (learns(status)) {
         ++counters_.learned;
-    } else if (is_fault(status.reason())) {
+    } else if (may_learn_ && is_fault(status.reason())) {
         ++counters_.faults;
         counters_.last_fault = status.reason();
     }

@@ -193,8 +193,10 @@ int PositionFeedback::longest_silence() const noexcept {
 }
 
 std::optional<Eigen::Index> PositionFeedback::silent_joint() const noexcept {
-    const auto [oldest, newest] = std::ranges::minmax_element(observed_tick_);
-    return *oldest < *newest ? std::optional(oldest - observed_tick_.begin()) : std::nullopt;
+    const auto oldest = std::ranges::min_element(observed_tick_);
+    const auto silent =
+        std::ranges::count_if(observed_tick_, [&](std::int64_t tick) { return tick < tick_; });
+    return silent == 1 ? std::optional(oldest - observed_tick_.begin()) : std::nullopt;
 }
 
 bool PositionFeedback::known() const noexcept {

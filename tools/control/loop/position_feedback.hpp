@@ -87,10 +87,10 @@ class PositionFeedback {
     }
     /// Returns the ticks since the last reading of the joint that has waited longest.
     int longest_silence() const noexcept;
-    /// Returns that joint; none if no other joint has a newer reading.
+    /// Returns the joint without a reading in this tick; none if there is not exactly one.
     std::optional<Eigen::Index> silent_joint() const noexcept;
     /// Returns whether the motion at this tick is known: every joint's last reading is within the bounds and
-    /// at most `bridged_ticks` old.
+    /// was added at most `bridged_ticks` ago.
     bool known() const noexcept;
     /// Returns whether every joint has a reading of this tick.
     bool complete() const noexcept;

@@ -75,9 +75,8 @@ struct TickHealth {
     /// Ticks since the last reading of the joint that has waited longest. It bounds the count of successive
     /// ticks in which different joints lack a reading.
     int longest_silence = std::numeric_limits<int>::max();
-    Eigen::Index joint_number = 0; ///< from 0, of the joint with abnormal behaviour
-    std::optional<Eigen::Index> silent_joint =
-        {}; ///< from 0, that has waited longest; none: all are equally old
+    Eigen::Index joint_number = 0;                 ///< from 0, of the joint with abnormal behaviour
+    std::optional<Eigen::Index> silent_joint = {}; ///< from 0, without a reading; none: not exactly one
 };
 
 /// State machine for a safe stop. The first cause is kept. A stopped loop cannot be restarted.

@@ -29,7 +29,10 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
 
     Tick tick(const MeasuredSample& sample, Budget budget) override {
         const Tick tick = estimator().tick(sample, informs() ? budget : Budget::predict_only());
-        note(sample.time_ns, watch(sample, tick));
+        const double step_s = 1e-9 * static_cast<double>(sample.time_ns - last_ns_);
+        const bool gap = step_s > static_cast<double>(ContactWatch::Detector::longest_gap_s);
+        const bool contact = watch(sample, tick);
+        note(gap && !contact ? last_ns_ : sample.time_ns, contact); // a contact ends before the gap
         last_ns_ = sample.time_ns;
         return tick;
     }

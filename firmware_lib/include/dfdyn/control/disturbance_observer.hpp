@@ -81,8 +81,8 @@ class DisturbanceObserver {
     ///    grow against a limit (anti-windup).
     ///
     /// A NaN or infinite value, or a product of inertia and rate that could overflow, leaves the estimate of
-    /// its joint unchanged. The first rate after a restart is ignored if the bandwidth times inertia times
-    /// rate exceeds the limit.
+    /// its joint unchanged. After a restart ticks are ignored until one has a rate whose product with the
+    /// bandwidth and the inertia is within the limit.
     const Torques& update(const Scalar* feedback, const Scalar* inertia, const Scalar* error_rate,
                           const Scalar* excess) noexcept {
         for (int k = 0; k < joints_; ++k) {

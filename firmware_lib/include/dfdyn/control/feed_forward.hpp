@@ -93,7 +93,7 @@ class FeedForward {
     }
 
     /// Takes what vibrations left of the observer's `bandwidth` at joint `k`, 0 … 1; initially 1:
-    /// `DisturbanceObserver::share()`. Other values are ignored. `begin` keeps it. Cost: 2 multiplications.
+    /// `DisturbanceObserver::share()`. Other values are ignored. `begin` keeps it. Cost: 4 multiplications.
     void observer_bandwidth_share(int k, Scalar share) noexcept {
         if (share >= 0 && share <= 1) {
             comparison_.follow(k, share * settings_.bandwidth[k], settings_);
@@ -166,8 +166,9 @@ class FeedForward {
     ///
     /// Samples are taken at the knots. A sample whose position is missing is lost, and learning waits until
     /// the window of the measured motion is full again. From the next period on, samples are taken in the
-    /// ticks in which a position has then arrived. The samples of a window are therefore always one period
-    /// apart, and encoders at a fraction of the loop's rate may have any phase.
+    /// tick of the period in which the next position came. The samples of a window are therefore always one
+    /// period apart, and encoders that give a position every so many ticks may have any phase, if that
+    /// number divides `ticks_per_sample`.
     void measured(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
         const bool due = since_knot_ == sample_tick_;
         if (due && position != nullptr) {

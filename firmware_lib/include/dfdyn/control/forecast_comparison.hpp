@@ -31,7 +31,9 @@ class ForecastComparison {
           combination_(torques_, joints_, settings.memory_s / settings.sample_period_s()),
           slow_(Table::zeros(extent<product(sum(forecasts, 1), n)>(torques_ * joints_))), error_(slow_),
           followed_(Torques::zeros(joints_)), target_(followed_), due_(Counts::zeros(joints_)),
-          compared_(due_) {}
+          compared_(due_) {
+        restart();
+    }
 
     /// Sets the bandwidth, rad/s, with which an observer takes over the errors of joint `k`.
     void follow(int k, Scalar bandwidth, const Settings& settings) noexcept {
@@ -45,10 +47,13 @@ class ForecastComparison {
         for (int k = 0; k < joints_; ++k) {
             due_[k] = compared_[k] = 0;
         }
+        waits_ = false;
+        std::fill(target_.begin(), target_.end(), std::numeric_limits<Scalar>::quiet_NaN());
     }
 
     /// Begins a knot. The slow errors of joints that were not compared since the last one fade.
     void begin_knot() noexcept {
+        learn();
         for (int i = 0; i < slow_.size(); ++i) {
             const int k = i % joints_;
             if (due_[k] != 0) {
@@ -63,15 +68,15 @@ class ForecastComparison {
     /// torques in this tick, finite.
     template <class Forecast>
     void compare(const Scalar* torque, const Settings& settings, const Forecast& forecast) noexcept {
-        bool any = false;
+        bool every = true;
         for (int k = 0; k < joints_; ++k) {
-            const bool compares = due_[k] != 0 && std::isfinite(torque[k]);
-            target_[k] = compares ? Scalar(0) : Scalar(std::numeric_limits<Scalar>::quiet_NaN());
-            if (!compares) {
+            if (due_[k] == 0 || !std::isfinite(torque[k])) {
+                every = every && due_[k] == 0;
                 continue;
             }
-            any = true;
+            target_[k] = 0;
             due_[k] = 0;
+            waits_ = true;
             compared_[k] = std::min<std::int32_t>(compared_[k] + 1, knots_);
             for (int i = k; i < slow_.size(); i += joints_) {
                 const Scalar error = bounded(forecast(i) - torque[k], settings.limit[k]);
@@ -80,8 +85,8 @@ class ForecastComparison {
                 slow_[i] += followed_[k] * (error - slow_[i]);
             }
         }
-        if (any) {
-            combination_.learn(error_.data(), target_.data());
+        if (every) {
+            learn();
         }
     }
 
@@ -105,6 +110,17 @@ class ForecastComparison {
     using Counts = Storage<std::int32_t, n>;
     using Combination = ForecastCombination<Scalar, sum(forecasts, 1), n>;
 
+    /// Weights the forecasts by the errors since the last knot: at most once per knot, because the
+    /// combination counts its samples for all joints together.
+    void learn() noexcept {
+        if (!waits_) {
+            return;
+        }
+        combination_.learn(error_.data(), target_.data());
+        waits_ = false;
+        std::fill(target_.begin(), target_.end(), std::numeric_limits<Scalar>::quiet_NaN());
+    }
+
     [[no_unique_address]] Extent<n> joints_;
     [[no_unique_address]] Extent<sum(forecasts, 1)> torques_; ///< of a joint: nominal and forecasts
     std::int32_t knots_;                                      ///< of `memory_s`
@@ -112,6 +128,7 @@ class ForecastComparison {
     Table slow_, error_; ///< errors: low-pass filtered, and as compared
     Torques followed_;   ///< gain of the low-pass filter per sample period
     Torques target_;     ///< of the errors: 0; NaN for a joint that is not compared
+    bool waits_ = false; ///< errors that the weights do not contain yet
     Counts due_;         ///< 1: not compared since the last knot
     Counts compared_;    ///< number of compared knots, at most `knots_`
 };

@@ -96,10 +96,11 @@ class ContactDetector {
     }
 
     /// Registers a tick without a prediction or a measurement, at `time_ns` by the clock of the stamps.
-    /// Interrupts only after `longest_gap_s` without one, or if the clock went back: until then a contact
-    /// stays, and single lost samples do not keep contacts from being detected. O(1).
+    /// Interrupts only after `longest_gap_s` without one, or if the stamp does not advance: until then a
+    /// contact stays. A lost sample also costs an estimator the length of its window, which must be shorter
+    /// than `longest_gap_s` for this to help. O(1).
     void skip(std::int64_t time_ns) noexcept {
-        if (time_ns < time_ns_ || since_last(time_ns) > longest_gap_s) {
+        if (time_ns <= time_ns_ || since_last(time_ns) > longest_gap_s) {
             interrupt();
         }
     }

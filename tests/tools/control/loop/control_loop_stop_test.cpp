@@ -136,6 +136,25 @@ TEST_CASE("the loop is done once brakes are requested after a requested stop or 
     CHECK(told.loop().cause() == StopCause::bus_lost);
 }
 
+TEST_CASE("a position that returns while the torque goes to zero does not bring it back") {
+    Bench bench(pendulum_scenario(), no_observer);
+    for (int tick = 0; tick < 50; ++tick) {
+        bench.tick();
+    }
+    for (int tick = 0; tick < 1005; ++tick) {
+        bench.tick(false);
+    }
+    REQUIRE_FALSE(bench.loop().done());
+    double torque = bench.tick();
+    for (int tick = 0; tick < 200; ++tick) {
+        const double before = torque;
+        torque = bench.tick(tick % 3 == 0);
+        CHECK(std::abs(torque) <= std::abs(before));
+    }
+    CHECK(torque == 0);
+    CHECK(bench.loop().done());
+}
+
 TEST_CASE("a requested stop keeps the torque until the brakes had time to close and ends with none") {
     Bench bench(pendulum_scenario(), no_observer);
     for (int tick = 0; tick < 50; ++tick) {
