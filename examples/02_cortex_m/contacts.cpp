@@ -26,19 +26,10 @@ dfdyn::ContactDetector<float, joints> detector({}, ur5_model::contact_limits);
 std::uint32_t largest = 0;
 std::uint32_t sum = 0;
 
-/// Returns whether a sample describes the arm: a push does not, nor do joints that are all at rest, because
-/// their friction then bears a part of the weight.
-bool informs() {
-    bool moves = !detector.running(); // unknown
-    for (int k = 0; k < joints; ++k) {
-        moves = moves || detector.motion(k) != dfdyn::JointMotion::standing;
-    }
-    return moves && !detector.suspected();
-}
-
-/// Returns true during a contact.
+/// Returns true during a contact. A push is no property of the arm, and at rest friction bears a part of the
+/// weight: neither is learned.
 bool contact(const Estimator::Sample& sample) {
-    const dfdyn::Budget budget{informs() ? Estimator::cost().learn : 0};
+    const dfdyn::Budget budget{detector.informative() ? Estimator::cost().learn : 0};
     const auto estimate = estimator.tick(sample, budget);
     const std::uint32_t begin = instruction_counter();
     if (estimate.status.estimated() && sample.output_valid) {

@@ -212,6 +212,20 @@ TEST_CASE("stamps that jump from the latest to the earliest one end a contact", 
     CHECK_FALSE(detector.tick(Stamps::min(), zero, pushed, zero));
 }
 
+TEST_CASE("samples inform about an arm in motion and not about one at rest or pushed", "[contacts]") {
+    const Arm unknown;
+    CHECK(unknown.detector.informative());
+    Arm rests;
+    rests.run(1, still, still);
+    CHECK_FALSE(rests.detector.informative());
+    Arm moves;
+    moves.run(2, moving, still);
+    CHECK(moves.detector.informative());
+    moves.run(0.3, moving, push(2, 4));
+    CHECK(moves.detector.contact());
+    CHECK_FALSE(moves.detector.informative());
+}
+
 TEST_CASE("a contact is found although every 20th tick has no sample", "[contacts]") {
     Detector detector({}, limits);
     const double zero[2]{};

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 namespace good_samples_test {
 
@@ -21,16 +23,19 @@ Recording recording(const std::string& file, OutputKind outputs = OutputKind::mo
     return read_recording(std::filesystem::path(DFDYN_TEST_DATA_DIR) / file, options);
 }
 
+TrainedModel trained_on(Recording motion, OutputKind outputs, const ModelTraining& training) {
+    const std::vector<Recording> recordings{std::move(motion)};
+    TrainedModel model = train_model(prepare_training(recordings, training), outputs, training, {}).model;
+    calibrate_innovation_limit(model, recordings);
+    return model;
+}
+
 TrainedModel trained_on(const std::string& file) {
-    const std::vector<Recording> recordings{recording(file)};
     ModelTraining training;
     training.options.feature_count = 50;
     training.options.likelihood_rows = 300;
     training.options.starts = 1;
-    TrainedModel model =
-        train_model(prepare_training(recordings, training), OutputKind::motor_current, training, {}).model;
-    calibrate_innovation_limit(model, recordings);
-    return model;
+    return trained_on(recording(file), OutputKind::motor_current, training);
 }
 
 struct Outcome {
@@ -77,9 +82,8 @@ TEST_CASE("a servo rejects no good sample at other gains and along other motions
 }
 
 TEST_CASE("a model of two seconds of motion rejects no good sample of the next second") {
+    constexpr OutputKind outputs = OutputKind::joint_torque;
     const std::string file = "tx40_figaroh/tx40_5kHz.csv";
-    const std::vector<Recording> learned{
-        recording(file, OutputKind::joint_torque, {.first = 0, .last = 10'500})};
     ModelTraining training;
     training.options.lags = 20;
     training.options.every = 10;
@@ -87,11 +91,9 @@ TEST_CASE("a model of two seconds of motion rejects no good sample of the next s
     training.options.likelihood_rows = 200;
     training.options.starts = 1;
     training.options.refinement_evaluations = 0;
-    TrainedModel model =
-        train_model(prepare_training(learned, training), OutputKind::joint_torque, training, {}).model;
-    calibrate_innovation_limit(model, learned);
-    const Outcome outcome =
-        replayed(model, recording(file, OutputKind::joint_torque, {.first = 10'500, .last = 15'000}));
+    const TrainedModel model =
+        trained_on(recording(file, outputs, {.first = 0, .last = 10'500}), outputs, training);
+    const Outcome outcome = replayed(model, recording(file, outputs, {.first = 10'500, .last = 15'000}));
     CHECK(outcome.refused_share == 0);
     CHECK(outcome.learned_share > 0.95);
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -74,6 +75,17 @@ double common_period_s(std::span<const Recording> recordings) {
                      where + ", found one every " + rounded_text(found_s) + " s");
 }
 
+/// Refuses a recording whose period is shorter than that of the training of `model`, or more than `most`
+/// times as long; one of one row has none.
+void check_period(const Recording& recording, double period_s, double most, const std::string& model) {
+    if (recording.row_count() > 1) {
+        const double own_s = common_period_s({&recording, 1});
+        if (own_s < (1 - followed_deviation) * period_s || own_s > most * period_s) {
+            refuse_period(recording, own_s, period_s, "the training of " + model);
+        }
+    }
+}
+
 /// Refuses recordings with another period than the first one; those of one row have none.
 void check_same_period(std::span<const Recording> recordings) {
     const Recording* first = nullptr;
@@ -102,12 +114,11 @@ double sample_period_s(std::span<const Recording> recordings) {
 }
 
 void check_not_faster(const Recording& recording, double period_s, const std::string& model) {
-    if (recording.row_count() > 1) {
-        const double own_s = common_period_s({&recording, 1});
-        if (own_s < (1 - followed_deviation) * period_s) {
-            refuse_period(recording, own_s, period_s, "the training of " + model);
-        }
-    }
+    check_period(recording, period_s, std::numeric_limits<double>::infinity(), model);
+}
+
+void check_period(const Recording& recording, double period_s, const std::string& model) {
+    check_period(recording, period_s, 1 + followed_deviation, model);
 }
 
 SteadyStride steady_stride(std::span<const Recording> recordings) {

@@ -24,6 +24,9 @@ double sample_period_s(std::span<const Recording> recordings);
 /// named in the message.
 void check_not_faster(const Recording& recording, double period_s, const std::string& model);
 
+/// Throws InputError, in addition, if the rows are farther apart by more than `followed_deviation`.
+void check_period(const Recording& recording, double period_s, const std::string& model);
+
 /// A number of rows from one to the next with which a recording has constant time steps.
 struct SteadyStride {
     std::size_t rows = 0; ///< from 2; 0: there is none up to 8

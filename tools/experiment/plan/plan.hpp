@@ -120,8 +120,8 @@ Plan read_plan(const std::filesystem::path& path);
 const Case& case_named(const Plan& plan, const std::string& name);
 
 /// Returns the plan with one draw and few features, rows and starts: a functional test of all cases in
-/// seconds, without meaningful accuracy. It reads the whole training log, and
-/// learns the first 400 of the remaining rows online.
+/// seconds, without meaningful accuracy. It reads the whole training log, and learns at most 400 rows behind
+/// the first ones online.
 Plan quick_plan(Plan plan);
 
 } // namespace dfdyn::tools

@@ -4,7 +4,6 @@
 #include "tools/base/recording/row_parts.hpp"
 #include "tools/base/recording/sample_grid.hpp"
 #include "tools/base/text/error.hpp"
-#include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/experiment/plan/file_checksum.hpp"
 
@@ -35,24 +34,14 @@ void read_subsets(const Plan& plan, std::size_t joints, PlanData& data) {
     }
 }
 
-/// Refuses a recording with another sample period than the start's: every model would take faster rows for
-/// its own samples, and slower ones for gaps.
-void check_period(const Recording& recording, double period_s, const Plan& plan) {
-    const std::string model = "plan " + in_quotes(plan.name);
-    check_not_faster(recording, period_s, model);
-    const double own_s = recording.row_count() > 1 ? sample_period_s({&recording, 1}) : period_s;
-    if (own_s > (1 + followed_deviation) * period_s) {
-        throw InputError(recording.source + ": expected a row every " + rounded_text(period_s) +
-                         " s, as in the training of " + model + ", found one every " + rounded_text(own_s) +
-                         " s");
-    }
-}
-
+/// Refuses recordings with another sample period than the start's: every model would take faster rows for its
+/// own samples, and slower ones for gaps.
 void check_periods(const Plan& plan, const PlanData& data) {
     const double period_s = sample_period_s({&data.start, 1});
-    check_period(data.online, period_s, plan);
+    const std::string model = "plan " + in_quotes(plan.name);
+    check_period(data.online, period_s, model);
     for (const Recording& subset : data.subsets) {
-        check_period(subset, period_s, plan);
+        check_period(subset, period_s, model);
     }
 }
 

@@ -28,7 +28,8 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
           position_(contact.limit.size() / joint_motion_count), error_(position_.size()), contacts_(kept) {}
 
     Tick tick(const MeasuredSample& sample, Budget budget) override {
-        const Tick tick = estimator().tick(sample, informs() ? budget : Budget::predict_only());
+        const Tick tick =
+            estimator().tick(sample, watch_.detector().informative() ? budget : Budget::predict_only());
         const double step_s = 1e-9 * static_cast<double>(sample.time_ns - last_ns_);
         const bool gap = step_s > static_cast<double>(ContactWatch::Detector::longest_gap_s);
         const bool contact = watch(sample, tick);
@@ -61,17 +62,6 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
 
   private:
     static constexpr std::size_t kept = 4096;
-
-    /// Returns whether the last tick is informative: an arm in motion without a contact or a suspected one.
-    /// At rest, friction bears torques that do not occur in motion.
-    bool informs() const {
-        const ContactWatch::Detector& detector = watch_.detector();
-        bool moves = !detector.running();
-        for (int k = 0; k < detector.size(); ++k) {
-            moves = moves || detector.motion(k) != JointMotion::standing;
-        }
-        return moves && !(detector.running() && detector.suspected());
-    }
 
     bool watch(const MeasuredSample& sample, const Tick& tick) {
         if (!tick.status.estimated() || sample.output.empty()) {

@@ -217,8 +217,6 @@ class FeedForward {
     using Forecasts = Storage<Scalar, product(forecasts, n)>;
     using Comparison = ForecastComparison<Scalar, forecasts, n>;
 
-    [[nodiscard]] Scalar period_s() const noexcept { return settings_.period_s(); }
-
     static Scalar bounded(Scalar value, Scalar limit) noexcept { return Comparison::bounded(value, limit); }
 
     /// Returns element `i` of the forecasts, interpolated for the present tick.
@@ -286,7 +284,7 @@ class FeedForward {
         for (int i = k; total > 0 && i < mix_.size(); i += joints_) {
             farthest = std::max(farthest, Scalar(std::abs(earned[i] / total - mix_[i])));
         }
-        const Scalar step = std::min(Scalar(1), period_s() / settings_.fall_s / farthest);
+        const Scalar step = std::min(Scalar(1), settings_.period_s() / settings_.fall_s / farthest);
         for (int i = k; farthest > 0 && i < mix_.size(); i += joints_) {
             mix_[i] += step * (earned[i] / total - mix_[i]);
         }
@@ -297,9 +295,9 @@ class FeedForward {
         const Learned learned = combined(k, [this](int i) { return at_present(i); });
         const bool known = known_ && next_known_;
         const Scalar earned = enabled_ && known && comparison_.judged(k) ? learned.earned : Scalar(0);
-        share_[k] +=
-            std::clamp(earned - share_[k], -period_s() / settings_.fall_s, period_s() / settings_.rise_s);
-        const Scalar most = settings_.rate[k] * period_s();
+        share_[k] += std::clamp(earned - share_[k], -settings_.period_s() / settings_.fall_s,
+                                settings_.period_s() / settings_.rise_s);
+        const Scalar most = settings_.rate[k] * settings_.period_s();
         const Scalar wanted = known ? added(k, learned, nominal) : Scalar(0);
         part_[k] += std::clamp(wanted - part_[k], -most, most);
         return bounded(nominal + part_[k], settings_.limit[k]);

@@ -23,11 +23,10 @@ namespace dfdyn {
 /// baseline. No contact begins within `settling_s` after an interruption or a gap over `longest_gap_s`.
 ///
 /// It is a detector, not a safety function: contacts below the limits or slower than the baseline are not
-/// detected. docs/guide/contacts.md lists the recordings that chose the constants. Use in each tick; learn,
-/// with a budget > 0, only while a joint moves (`motion`) and no contact is `suspected`:
+/// detected. docs/guide/contacts.md lists the recordings that chose the constants. Use in each tick:
 ///
-///     const auto estimate = estimator.tick(sample, budget);
-///     if (estimate.status.estimated() && sample.output_valid) {
+///     const auto estimate = estimator.tick(sample, detector.informative() ? budget :
+///     Budget::predict_only()); if (estimate.status.estimated() && sample.output_valid) {
 ///         for (int k = 0; k < joints; ++k) {
 ///             error[k] = sample.output[k] - estimate.prediction[k];
 ///         }
@@ -123,6 +122,16 @@ class ContactDetector {
     /// Returns true during a contact and when one may begin: a learner should then not attribute the error to
     /// the arm.
     [[nodiscard]] bool suspected() const noexcept { return contact_ || excess_ >= release; }
+    /// Returns whether the last sample describes the arm: a push does not, nor do joints that are all at
+    /// rest, whose friction then bears torques that do not occur in motion. True also while the motion is
+    /// unknown, after an interruption. O(joints).
+    [[nodiscard]] bool informative() const noexcept {
+        bool moves = !running_;
+        for (int k = 0; k < count_; ++k) {
+            moves = moves || motion(k) != JointMotion::standing;
+        }
+        return moves && !suspected();
+    }
     /// Returns the joint with the largest deviation in units of its limit at the start of the last contact.
     [[nodiscard]] int joint() const noexcept { return joint_; }
     /// Returns the deviation of a joint in this tick, in its output's unit.

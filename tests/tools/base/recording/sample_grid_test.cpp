@@ -122,6 +122,13 @@ TEST_CASE("rows closer than a model's sample period are refused, rows farther ap
                          Catch::Matchers::Message("run.csv: expected a row every 0.008 s, as in the training "
                                                   "of m.json, found one every 0.002 s"));
     CHECK_NOTHROW(check_not_faster(with_stamps({5}), 0.001, "m.json"));
+    CHECK_NOTHROW(check_period(recording, 0.0022, "m.json"));
+    CHECK_THROWS_AS(check_period(recording, 0.008, "m.json"), InputError);
+    CHECK_THROWS_MATCHES(check_period(recording, 0.001, "m.json"), InputError,
+                         Catch::Matchers::Message(recording.source +
+                                                  ": expected a row every 0.001 s, as in the "
+                                                  "training of m.json, found one every 0.002 s"));
+    CHECK_NOTHROW(check_period(with_stamps({5}), 0.001, "m.json"));
 }
 
 } // namespace sample_grid_test
