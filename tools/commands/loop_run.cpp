@@ -266,6 +266,9 @@ void check_usage(const LoopOptions& options) {
     const bool model = !options.model.empty();
     refuse(!model && !options.on_finding.empty(), "loop: --on-finding: expected --model, found none");
     refuse(!model && !options.on_contact.empty(), "loop: --on-contact: expected --model, found none");
+    refuse(options.from_prior && !options.on_contact.empty(),
+           "loop: --on-contact: expected the trained start, to which the limits of contacts belong, found "
+           "--from-prior");
     refuse(!model && (options.from_prior || !options.limits.learned_limit.empty()),
            "loop: --from-prior and --learned-limit: expected --model, found none");
     refuse(options.simulate && options.limits.mode == StopMode::limp,

@@ -7,10 +7,11 @@
 
 namespace dfdyn::tools {
 
-SimulatedPlant::SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& position)
+SimulatedPlant::SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& first)
     : period_s_(1 / scenario.integration_rate_hz),
       encoder_steps_(std::llround(scenario.integration_rate_hz / scenario.encoders.rate_hz)),
-      arm_(real_robot(robot, scenario.robot_errors), scenario.actuators, position, scenario.loads),
+      arm_(real_robot(robot, scenario.robot_errors), scenario.actuators, start_position(scenario, first),
+           scenario.loads),
       payloads_(scenario.payloads, robot), faults_(scenario.faults, robot.joints.size()),
       encoders_(scenario.encoders, prismatic_joints(robot), scenario.seed),
       torque_sensor_(scenario.torque_sensor, period_s_, scenario.seed) {

@@ -11,8 +11,9 @@ namespace dfdyn::tools {
 /// readings.
 class SimulatedPlant {
   public:
-    /// Starts at rest at `position`. Throws InputError as SimulatedArm does.
-    SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& position);
+    /// Starts at rest. `first`: the task's first reference, see start_position. Throws InputError as
+    /// SimulatedArm does.
+    SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& first);
 
     /// Sets the torque, subject to the actuators' limit.
     void apply(const JointVector& torque) { arm_.apply(torque); }

@@ -62,6 +62,27 @@ TEST_CASE("an exact rigid body makes the loop follow and an unknown payload leav
     CHECK(rms(errors(scenario, 5), 0) == Approx(sag).epsilon(0.5));
 }
 
+TEST_CASE("an arm that starts beside the motion is led in without a kick") {
+    Scenario scenario = pendulum_scenario();
+    scenario.start_offset = JointVector::Constant(1, 0.25); // 12.5 of 20 N·m of feedback
+    ClosedLoop loop(test_pendulum(), scenario, "test", nullptr, nullptr, without_observer());
+    double before = 0;
+    int tick = 0;
+    loop.run_to(5, [&](const ClosedLoopInstant& instant) {
+        const double command = instant.command[0];
+        if (tick == 0) {
+            CHECK(command == Approx(weight(loop.plant().truth().position[0])).margin(0.05));
+        } else {
+            CHECK(std::abs(command - before) < 0.5);
+        }
+        CHECK(std::abs(instant.error[0]) < 2e-3);
+        before = command;
+        ++tick;
+    });
+    CHECK(loop.loop().state() == LoopState::running);
+    CHECK(loop.loop().start_offset()[0] == Approx(0.25));
+}
+
 TEST_CASE("a loop that learns compensates an unknown payload") {
     DFDYN_SEEDED_ENGINE(engine);
     const LoopModel model = random_model(engine);

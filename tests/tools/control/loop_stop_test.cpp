@@ -8,6 +8,7 @@
 #include "tools/control/closed_loop.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <set>
 #include <string>
@@ -162,6 +163,16 @@ std::vector<StopFault> stop_faults() {
     };
 }
 
+/// Returns the scenario with an encoder of joint 1 that reads 0.6 rad too much from 4 s on.
+Scenario with_jump(Scenario scenario, double lasts_s) {
+    Fault fault;
+    fault.from_ns = 4'000'000'000;
+    fault.until_ns = fault.from_ns + std::llround(1e9 * lasts_s);
+    fault.act = [](Faults& faults) { faults.encoders.jump[0] += 0.6; };
+    scenario.faults = {fault};
+    return scenario;
+}
+
 TEST_CASE("every stop over every device family is in time and without a jump and the arm comes to rest") {
     const TemporaryDirectory directory;
     const Arm arm = small_arm();
@@ -196,6 +207,52 @@ TEST_CASE("every stop over every device family is in time and without a jump and
     CHECK(tested == driven_families());
 }
 
+TEST_CASE("one wrong position over any device family stops the arm where it is or is ignored") {
+    const TemporaryDirectory directory;
+    const Arm arm = small_arm();
+    for (const Family& family : families(directory)) {
+        for (const double jump : {-0.6, 0.2, 0.6}) {
+            CAPTURE(family.name, jump);
+            FaultyLoop loop(arm.robot, arm.scenario,
+                            read_bus_description(directory.write("bus.json", family.text)));
+            loop.run_to(1.6);
+            loop.forget_peaks();
+            const double speed = loop.plant().truth().velocity.cwiseAbs().maxCoeff();
+            const int begin = loop.moving_tick();
+            loop.run_to(2.2, [&](int tick) {
+                LoopFault fault;
+                if (tick == begin + 1) {
+                    fault.reads = [jump](JointVector& position) { position[0] += jump; };
+                }
+                return fault;
+            });
+            CHECK(loop.peak_step() <= 0.1 + 1e-9);
+            if (loop.loop().state() != LoopState::running) {
+                CHECK(loop.loop().cause() == StopCause::following_error);
+                CHECK(loop.braked());
+                CHECK(loop.peak_speed() < 1.2 * speed);
+                CHECK(loop.peak_distance() < speed * 0.14);
+            }
+        }
+    }
+}
+
+TEST_CASE("one wrong position does not make the stop of a loop at 100 Hz throw the arm") {
+    Arm arm = read_arm("small_arm/small_arm.urdf", "small_arm_loop.json");
+    for (const double lasts_s : {0.01, 10.0}) {
+        CAPTURE(lasts_s);
+        ClosedLoop loop(arm.robot, with_jump(arm.scenario, lasts_s), "test", nullptr, nullptr, {});
+        loop.run_to(3.99, [](const ClosedLoopInstant&) {});
+        const double speed = loop.plant().truth().velocity.cwiseAbs().maxCoeff();
+        double peak = 0;
+        loop.run_to(6, [&](const ClosedLoopInstant&) {
+            peak = std::max(peak, loop.plant().truth().velocity.cwiseAbs().maxCoeff());
+        });
+        CHECK(loop.loop().cause() == StopCause::following_error);
+        CHECK(peak < 2 * speed);
+    }
+}
+
 /// Returns the distance (rad) that a pendulum with an unmodelled load sinks after a stop, with or without a
 /// model that learned the load before.
 double sinks(const LoopModel* learned, const std::vector<double>& bandwidth) {
@@ -222,6 +279,29 @@ TEST_CASE("an arm that has learned or observes its load holds it after the loop 
     CHECK(nominal > 0.02);
     CHECK(sinks(&model, {0}) < nominal / 3);
     CHECK(sinks(nullptr, {}) < nominal / 3);
+}
+
+TEST_CASE("a stop does not keep the friction of the motion that the observer compensated") {
+    Scenario scenario = pendulum_scenario();
+    scenario.controller.position_gain[0] = 5;
+    scenario.controller.velocity_gain[0] = 1;
+    scenario.actuators.friction.assign(1, {});
+    scenario.actuators.friction[0].viscous = 3; // the position gain alone balances it after 0.6 s
+    scenario.task = PointToPointTask{{JointVector::Constant(1, 0.3), JointVector::Constant(1, 1.5)}, 3, 0.5};
+    FaultyLoop loop(test_pendulum(), scenario, one_drive(at_sync), nullptr,
+                    {{0.5}, {}, StopMode::hold, {40}});
+    loop.run_to(1.5); // at the largest speed
+    REQUIRE(loop.loop().state() == LoopState::running);
+    REQUIRE(loop.plant().truth().velocity[0] > 0.5);
+    loop.forget_peaks();
+    loop.run_to(2.5, [](int) {
+        LoopFault fault;
+        fault.given.bus_lost = true;
+        return fault;
+    });
+    CHECK(loop.loop().state() == LoopState::stopped);
+    CHECK(loop.peak_distance() < 0.12); // braking alone takes 0.03 rad
+    CHECK(loop.braked());
 }
 
 TEST_CASE("a minute without faults causes no stop of the loop and no coasting tick", "[.long]") {

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace dfdyn::tools {
 
 namespace {
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// A position with a value that is not finite counts as missing.
 bool has_position(const LoopInput& input) { return input.position != nullptr && input.position->allFinite(); }
@@ -38,8 +41,8 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
       clock_(std::llround(config_.period_s * 1e9)), watch_(config_.safe_stop, config_.period_s),
       safe_stop_(config_.safe_stop), task_(std::move(task), config_.period_s),
       observer_(make_observer(config_)), zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_),
-      command_(zero_), excess_(zero_), feedback_torque_(zero_),
-      missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()) {
+      command_(zero_), start_offset_(zero_), excess_(zero_), feedback_torque_(zero_),
+      missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()), unsettled_(missing_.size()) {
     early_.position = zero_;
     early_.missing = missing_;
     references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
@@ -75,7 +78,6 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
         follow();
     } else if (state != LoopState::waiting && moved()) {
         hold();
-        limit();
     }
     return command_;
 }
@@ -114,11 +116,25 @@ void ControlLoop::take(int ticks_ago, const JointVector& position, const std::ve
     }
 }
 
+void ControlLoop::begin() {
+    const JointVector offset = -error_;
+    const auto pull = config_.gains.position.cwiseProduct(offset).cwiseAbs().array();
+    if ((pull > recovery_step * config_.torque_limit.array()).any()) {
+        references_.front().position += offset;
+        feedback_.move_reference(offset);
+        watch_.move_reference(offset);
+        task_.lead_in(offset, config_.safe_stop.speed_limit);
+        start_offset_ = offset;
+        error_ = zero_;
+    }
+    start_ns_ = clock_.expected_ns();
+    feed_forward_.begin(start_ns_, reference());
+    observer_.restart();
+}
+
 void ControlLoop::follow() {
     if (!moved()) {
-        start_ns_ = clock_.expected_ns();
-        feed_forward_.begin(start_ns_, reference());
-        observer_.restart();
+        begin();
     }
     ++counters_.running;
     counters_.coasted += feedback_.complete() ? 0 : 1;
@@ -134,14 +150,28 @@ void ControlLoop::follow() {
     counters_.limited += limit() ? 1 : 0;
     excess_ = unlimited - command_;
     feedback_torque_ = command_ - forward;
-    const bool full = excess_.isZero(0) && feedback_.regular();
-    if (full && !touched_) {
-        feed_forward_.commanded(command_);
+    if (!touched_) {
+        feed_forward_.commanded(required_torque());
     }
     learn();
-    commands_[tick_ % commands_.size()] = {command_, full};
+    commands_[tick_ % commands_.size()] = {command_, excess_.isZero(0) && feedback_.regular()};
     act();
     meet_contact();
+}
+
+JointVector ControlLoop::of_regular_joints(JointVector torque) const {
+    for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
+        torque[joint] = feedback_.regular(joint) ? torque[joint] : not_known;
+    }
+    return torque;
+}
+
+JointVector ControlLoop::required_torque() const {
+    JointVector torque = of_regular_joints(command_);
+    for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
+        torque[joint] = excess_[joint] == 0 ? torque[joint] : not_known;
+    }
+    return torque;
 }
 
 void ControlLoop::learn() {
@@ -218,13 +248,14 @@ void ControlLoop::act() {
         return;
     }
     const FindingAction action = config_.actions.of(verdict->cause);
-    const bool again = verdict->number == acted_number_ && verdict->cause == acted_on_;
+    const std::uint32_t cause = std::uint32_t{1} << static_cast<unsigned>(verdict->cause);
+    const bool again = verdict->number == acted_number_ && (acted_on_ & cause) != 0;
     if (action == FindingAction::report || again ||
         verdict->confidence < FindingActions::least_confidence(action)) {
         return;
     }
+    acted_on_ = verdict->number == acted_number_ ? acted_on_ | cause : cause;
     acted_number_ = verdict->number;
-    acted_on_ = verdict->cause;
     actions_.add({time_s(), verdict->cause, verdict->joint, action});
     if (action == FindingAction::relearn) {
         feed_forward_.relearn();
@@ -240,11 +271,9 @@ const ControlLoop::Sent* ControlLoop::command_then(int ago) const noexcept {
 }
 
 JointVector ControlLoop::disturbance() {
-    if (feedback_.regular()) {
-        const JointVector torque = feedback_.torque(), rate = feedback_.error_rate();
-        observer_.update(torque.data(), feed_forward_.inertia().data(), rate.data(), excess_.data());
-        feed_forward_.observer_bandwidth_share(observer_.share());
-    }
+    const JointVector torque = of_regular_joints(feedback_.torque()), rate = feedback_.error_rate();
+    observer_.update(torque.data(), feed_forward_.inertia().data(), rate.data(), excess_.data());
+    feed_forward_.observer_bandwidth_share(observer_.share());
     return joint_vector(observer_.estimate());
 }
 

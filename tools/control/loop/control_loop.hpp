@@ -55,12 +55,14 @@ struct LoopCounters {
 /// stop. It is independent of the operating system and the bus; the caller schedules the ticks. One tick has
 /// bounded cost, see FeedForward and PositionFeedback.
 ///
-/// Running: the loop starts when the arm has positions and is at the beginning of the reference. The
-/// feed-forward uses times on the loop's own grid and learns from the commands, so that a wrong torque sensor
-/// does not degrade the tracking. The disturbance observer compensates the error of the feed-forward, at most
-/// `observer_share` of the torque limit; noise of the readings changes it by about `observer_step` of the
-/// limit per tick at most. It holds its value while positions are missing. A joint that it makes vibrate, by
-/// `vibration_swing` of the limit from turn to turn, halves its bandwidth (dfdyn::VibrationWatch).
+/// Running: the loop starts when the arm has positions and is within the following error of the reference's
+/// beginning. If the position gain answered the distance by more than `recovery_step` of the torque limit,
+/// the reference begins where the arm is, and PausableTask leads it in. The feed-forward uses times on the
+/// loop's own grid and learns from the commands, so that a wrong torque sensor does not degrade the tracking.
+/// The disturbance observer compensates the error of the feed-forward, at most `observer_share` of the torque
+/// limit; noise of the readings changes it by about `observer_step` of the limit per tick at most. It holds
+/// its value while positions are missing. A joint that it makes vibrate, by `vibration_swing` of the limit
+/// from turn to turn, halves its bandwidth (dfdyn::VibrationWatch).
 ///
 /// The torque of feedback and observer changes by at most `feedback_step` of the torque limit per tick: a
 /// wrong reading that a joint could have reached makes no kick. After a tick that was not regular (see
@@ -80,10 +82,12 @@ struct LoopCounters {
 /// within `stop_time_s`. The command changes, by at most a torque limit per `stop_time_s`, to the sum of
 /// - the torque for this braking and against gravity, by the nominal rigid body and the learned part
 ///   (FeedForward::holding);
-/// - the observed disturbance, unless something blocked the arm or a reading was wrong;
-/// - the torque of the position and velocity gains, for joints with a reading in the last `damping_ticks`
-///   ticks, for any cause. The position gain contributes at most `spring_share` of the torque limit. Other
-///   joints are not damped; when their readings return, they brake from their position at that time.
+/// - the disturbance that the observer estimates until the brakes are requested, unless something blocked the
+///   arm or a reading was wrong;
+/// - the torque of the position and velocity gains, for joints with a believed reading in the last
+///   `damping_ticks` ticks, for any cause. The position gain contributes at most `spring_share` of the torque
+///   limit. Other joints are not damped and brake from their last believed motion; when their readings
+///   return, or when a jump has settled, they brake from their position at that time.
 ///
 /// The command is zero until the loop has moved the arm for the first time.
 ///
@@ -142,6 +146,10 @@ class ControlLoop {
     const JointVector& bandwidth() const noexcept { return config_.bandwidth; }
     /// Share of each joint's observer bandwidth that vibrations left, 1/256 … 1.
     JointVector bandwidth_share() const { return joint_vector(observer_.share()); }
+    /// Position minus reference where the loop began with a lead-in, rad (m); zeros without one.
+    const JointVector& start_offset() const noexcept { return start_offset_; }
+    /// Duration of the lead-in, s; 0: none.
+    double lead_in_s() const noexcept { return task_.lead_in_s(); }
     const LoopCounters& counters() const noexcept { return counters_; }
     const FeedForward& feed_forward() const noexcept { return feed_forward_; }
 
@@ -167,6 +175,8 @@ class ControlLoop {
 
     void sense(const LoopInput& input);
     void take(int ticks_ago, const JointVector& position, const std::vector<bool>* missing);
+    /// Begins the motion at the position of the arm.
+    void begin();
     void follow();
     /// Reacts to the monitor's findings, once per change and cause.
     void act();
@@ -185,6 +195,11 @@ class ControlLoop {
     /// Limits the change of the feedback and observer torque `wanted`.
     JointVector gradually(const JointVector& wanted);
     JointVector disturbance();
+    /// Returns `torque` with NaN at the joints without a regular reading.
+    JointVector of_regular_joints(JointVector torque) const;
+    /// Returns the command that the motion requires; NaN for joints whose command was limited or whose
+    /// readings are not regular.
+    JointVector required_torque() const;
     /// Passes this tick's sample to the learner, at its own time.
     void learn();
     /// Returns the command in effect at the time of the measurement of `ago` ticks before this tick's. Null
@@ -192,6 +207,10 @@ class ControlLoop {
     const Sent* command_then(int ago) const noexcept;
     void hold();
     JointVector holding_torque();
+    /// Returns the torque of the gains about the braking reference; NaN for joints that are not damped.
+    JointVector braking_feedback() const;
+    /// Returns the disturbance to compensate during the stop. `feedback`: see braking_feedback.
+    JointVector braking_disturbance(const JointVector& feedback);
     void begin_braking(Eigen::Index joint);
     void brake();
     void request_brakes();
@@ -203,7 +222,8 @@ class ControlLoop {
     /// Returns the reference at the time of the measurement of `ago` ticks before this tick.
     const Reference& measured_reference(int ago = 0) const noexcept;
     bool moved() const noexcept { return counters_.running > 0; }
-    bool damped(Eigen::Index joint) const noexcept { return feedback_.age(joint) <= damping_ticks; }
+    bool heard(Eigen::Index joint) const noexcept { return feedback_.age(joint) <= damping_ticks; }
+    bool damped(Eigen::Index joint) const noexcept { return heard(joint) && feedback_.settled(joint); }
 
     LoopConfig config_;
     FeedForward feed_forward_;
@@ -220,6 +240,7 @@ class ControlLoop {
     std::int64_t start_ns_ = 0;         ///< measurement time of its first tick, on the loop's grid
     Observer observer_;
     JointVector zero_, error_, command_;
+    JointVector start_offset_;
     JointVector excess_;          ///< part of the last command that the limits removed
     JointVector feedback_torque_; ///< part of the command without feed-forward
     int recovery_ = 0;            ///< remaining regular ticks with limited feedback
@@ -227,8 +248,9 @@ class ControlLoop {
     std::vector<bool> missing_; ///< joints without a reading at this tick
     /// ticks since the measurement of this tick's sample, if all its readings are regular
     std::optional<int> learnable_ago_;
-    Reference braking_;       ///< reference of joints that brake or hold; empty before
-    std::vector<bool> blind_; ///< joints that brake without readings
+    Reference braking_;           ///< reference of joints that brake or hold; empty before
+    std::vector<bool> blind_;     ///< joints that brake without readings
+    std::vector<bool> unsettled_; ///< joints that brake with a reading that is not believed
     std::optional<std::uint64_t> stopped_tick_, brake_tick_;
     std::uint64_t position_tick_ = 0; ///< tick of the last sample
     bool released_ = false;           ///< the torque goes to zero for good
@@ -238,8 +260,8 @@ class ControlLoop {
     double calm_for_s_ = 0;           ///< since the end of the contact
     Reference rest_;                  ///< held position after yielding; empty before
     TakenActions actions_;
-    std::size_t acted_number_ = 0;    ///< number of the last change with a reaction …
-    Cause acted_on_ = Cause::unknown; ///< … and its cause
+    std::size_t acted_number_ = 0; ///< number of the last change with a reaction …
+    std::uint32_t acted_on_ = 0;   ///< … and its causes with one, a bit each
     LoopCounters counters_;
 };
 

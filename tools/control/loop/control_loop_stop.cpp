@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dfdyn::tools {
 
@@ -23,29 +24,35 @@ bool opposed(StopCause cause, const std::optional<TakenAction>& stop) {
 void ControlLoop::hold() {
     request_brakes();
     released_ = released_ || releases();
-    command_ = slowly(released_ ? zero_ : holding_torque());
+    const JointVector wanted = released_ ? zero_ : holding_torque();
+    command_ = slowly(wanted);
+    limit();
+    excess_ = wanted - command_;
 }
 
 void ControlLoop::begin_braking(Eigen::Index joint) {
-    const double age_s = config_.period_s * static_cast<double>(feedback_.age(joint));
-    braking_.velocity[joint] = feedback_.velocity()[joint];
-    braking_.acceleration[joint] = -braking_.velocity[joint] / stop_time_s;
-    braking_.position[joint] = feedback_.position()[joint] + age_s * braking_.velocity[joint];
+    const PositionFeedback::JointMotion motion = feedback_.believed_motion(joint);
+    braking_.position[joint] = motion.position;
+    braking_.velocity[joint] = motion.velocity;
+    braking_.acceleration[joint] = -motion.velocity / stop_time_s;
 }
 
 void ControlLoop::brake() {
     if (braking_.position.size() == 0) {
         braking_ = {zero_, zero_, zero_};
+        feedback_.hold_reference(measured_reference().position);
         for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
             begin_braking(joint);
         }
     }
     for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
         const auto j = static_cast<std::size_t>(joint);
-        if (blind_[j] && damped(joint)) { // brakes from the present position because readings have returned
+        // readings have returned, or a jump has become the position
+        if (damped(joint) && (blind_[j] || (unsettled_[j] && feedback_.jumped(joint)))) {
             begin_braking(joint);
         }
-        blind_[j] = !damped(joint);
+        blind_[j] = !heard(joint);
+        unsettled_[j] = !feedback_.settled(joint);
         const double before = braking_.velocity[joint];
         const double after = before + config_.period_s * braking_.acceleration[joint];
         if (after * before <= 0) {
@@ -64,18 +71,37 @@ JointVector ControlLoop::holding_torque() {
         where.position[joint] = damped(joint) ? feedback_.position()[joint] : where.position[joint];
     }
     JointVector torque = feed_forward_.holding(where);
-    if (!opposed(safe_stop_.cause(), actions_.stop())) {
-        torque += joint_vector(observer_.lasting());
+    const JointVector feedback = braking_feedback();
+    if (!touched_ && !opposed(safe_stop_.cause(), actions_.stop())) {
+        torque += braking_disturbance(feedback);
     }
+    return torque + feedback.unaryExpr([](double part) { return std::isnan(part) ? 0 : part; });
+}
+
+JointVector ControlLoop::braking_feedback() const {
+    JointVector torque = zero_;
     for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
-        if (damped(joint)) {
-            const double most = spring_share * config_.torque_limit[joint];
-            const double spring = std::max(0.0, config_.gains.position[joint]) *
-                                  (braking_.position[joint] - feedback_.position()[joint]);
-            torque[joint] += std::clamp(spring, -most, most);
-            torque[joint] += std::max(0.0, config_.gains.velocity[joint]) *
-                             (braking_.velocity[joint] - feedback_.velocity()[joint]);
-        }
+        const double most = spring_share * config_.torque_limit[joint];
+        const double spring = std::max(0.0, config_.gains.position[joint]) *
+                              (braking_.position[joint] - feedback_.position()[joint]);
+        const double damping = std::max(0.0, config_.gains.velocity[joint]) *
+                               (braking_.velocity[joint] - feedback_.velocity()[joint]);
+        torque[joint] = damped(joint) ? std::clamp(spring, -most, most) + damping
+                                      : std::numeric_limits<double>::quiet_NaN();
+    }
+    return torque;
+}
+
+JointVector ControlLoop::braking_disturbance(const JointVector& feedback) {
+    if (!brake_tick_) { // afterwards it would push against closed brakes
+        const JointVector regular = of_regular_joints(feedback),
+                          rate = braking_.velocity - feedback_.velocity();
+        observer_.update(regular.data(), feed_forward_.inertia().data(), rate.data(), excess_.data());
+    }
+    JointVector torque = joint_vector(observer_.lasting());
+    for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
+        const bool moves = !brake_tick_ && damped(joint) && feedback_.regular(joint);
+        torque[joint] = moves ? observer_.estimate()[static_cast<int>(joint)] : torque[joint];
     }
     return torque;
 }
@@ -87,7 +113,7 @@ void ControlLoop::request_brakes() {
     }
     bool blind = false, rests = true;
     for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
-        blind = blind || !damped(joint);
+        blind = blind || !heard(joint);
         rests = rests && damped(joint) && std::abs(feedback_.velocity()[joint]) <= rest_speed;
     }
     const bool stopped = state() == LoopState::stopped;

@@ -9,9 +9,24 @@ namespace dfdyn::tools {
 PausableTask::PausableTask(std::unique_ptr<Task> task, double period_s)
     : task_(std::move(task)), period_s_(period_s), before_(task_->next()), after_(task_->next()) {}
 
+void PausableTask::lead_in(const JointVector& offset, const JointVector& speed_limit) {
+    constexpr double peak = 1.875; // of the polynomial's speed, relative to its mean
+    JointVector speed = JointVector::Constant(offset.size(), lead_in_speed);
+    if (speed_limit.size() > 0) {
+        speed = speed.cwiseMin(lead_in_share * speed_limit);
+    }
+    offset_ = offset;
+    lead_in_s_ = std::max(shortest_lead_in_s, peak * offset.cwiseAbs().cwiseQuotient(speed).maxCoeff());
+    led_s_ = rate_ * period_s_;
+}
+
 Reference PausableTask::next() {
-    Reference reference = on_path();
+    Reference reference = leads_in() ? on_lead_in() : on_path();
     step_rate();
+    if (leads_in()) {
+        led_s_ += rate_ * period_s_;
+        return reference;
+    }
     phase_ += rate_;
     if (phase_ >= 1) {
         phase_ -= 1;
@@ -24,6 +39,13 @@ void PausableTask::step_rate() {
     const double before = rate_;
     rate_ = pausing_ ? std::max(rate_ - period_s_ / pause_s, 0.0) : rate_;
     acceleration_ = (rate_ - before) / period_s_;
+}
+
+Reference PausableTask::on_lead_in() const {
+    const SmoothStep step = smooth_step(led_s_, lead_in_s_);
+    const double acceleration = rate_ * rate_ * step.acceleration + acceleration_ * step.rate;
+    return {before_.position + (1 - step.value) * offset_, -rate_ * step.rate * offset_,
+            -acceleration * offset_};
 }
 
 Reference PausableTask::on_path() const {

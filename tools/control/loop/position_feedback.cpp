@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 PositionFeedback::PositionFeedback(FeedbackGains gains, const DerivativeModel& filter, double period_s,
                                    MotionBounds bounds)
     : gains_(std::move(gains)), filter_(filter), period_s_(period_s), bounds_(std::move(bounds)),
-      window_(std::max(2, filter.velocity_window)) {
+      window_(std::max(settled_readings, filter.velocity_window)) {
     const Eigen::Index joints = gains_.position.size();
     const auto count = static_cast<std::size_t>(joints);
     reading_tick_.resize(count * static_cast<std::size_t>(window_));
@@ -69,13 +69,14 @@ void PositionFeedback::push(Eigen::Index joint, std::int64_t tick, double positi
 
 void PositionFeedback::restart(Eigen::Index joint) {
     const auto j = static_cast<std::size_t>(joint);
-    const bool returns = held_[j] < 3;
+    const bool returns = !settled(joint);
     if (returns) { // to the motion before the jump
         velocity_[joint] = restart_[j].velocity;
         reading_rate_[joint] = restart_[j].rate;
         restart_[j].jumped = false;
     } else {
-        restart_[j] = {newest_tick_[j], velocity_[joint], reading_error_[joint], bounded_rate(joint), true};
+        restart_[j] = {newest_tick_[j],       newest_[joint],      velocity_[joint],
+                       reading_error_[joint], bounded_rate(joint), true};
     }
     held_[j] = 0;
 }
@@ -104,13 +105,28 @@ bool PositionFeedback::plausible(Eigen::Index joint, std::int64_t tick, double p
         const double surprise = reference.position[joint] - position - error - rate * time_s;
         return std::abs(surprise) <= bounds_.acceleration[joint] * time_s * time_s + 4 * noise;
     };
-    if (held_[j] < 3) {
-        const Restart& last = restart_[j];
-        const bool returns = last.jumped && follows(last.tick, last.error, last.rate);
-        return !returns;
+    const Restart& last = restart_[j];
+    if (!settled(joint)) {
+        return !follows(last.tick, last.error, last.rate); // a return is not plausible after the jump
+    }
+    if (held_[j] < settled_readings && last.tick < 0) { // nothing to compare the first readings with
+        return true;
     }
     // without the fading of error_at, which at a high rate would be an acceleration
     return follows(newest_tick_[j], reading_error_[joint], bounded_rate(joint));
+}
+
+bool PositionFeedback::continues(Eigen::Index joint, std::int64_t tick, double position) const noexcept {
+    const auto j = static_cast<std::size_t>(joint);
+    if (held_[j] < 2) {
+        return true; // any velocity: something may have hit the arm
+    }
+    const auto first = j * static_cast<std::size_t>(window_);
+    const double time_s = period_s_ * static_cast<double>(tick - reading_tick_[first]);
+    const double last_s = period_s_ * static_cast<double>(reading_tick_[first] - reading_tick_[first + 1]);
+    const double expected = (reading_[first] - reading_[first + 1]) / last_s * time_s;
+    return std::abs(position - reading_[first] - expected) <=
+           bounds_.acceleration[joint] * time_s * (time_s + last_s) + 4 * noise_bound(joint);
 }
 
 void PositionFeedback::observe(int ticks_ago, const JointVector& position, const Reference& reference,
@@ -123,12 +139,14 @@ void PositionFeedback::observe(int ticks_ago, const JointVector& position, const
         }
         const bool next = held_[j] == 0 || tick == newest_tick_[j] + 1;
         const bool believed = plausible(joint, tick, position[joint], reference);
-        regular_[j] = next && believed;
         believed_[j] = believed;
         if (!believed) {
             restart(joint);
+        } else if (!settled(joint) && !continues(joint, tick, position[joint])) {
+            held_[j] = 0; // another jump
         }
         push(joint, tick, position[joint], reference.position[joint]);
+        regular_[j] = next && believed && settled(joint);
         observed_tick_[j] = tick_;
         reading_error_[joint] = reference.position[joint] - position[joint];
     }
@@ -142,6 +160,33 @@ void PositionFeedback::move_reference(const JointVector& distance) {
         reference_[i] += distance[static_cast<Eigen::Index>(i) / window_];
     }
     reading_error_ += distance;
+}
+
+PositionFeedback::JointMotion PositionFeedback::believed_motion(Eigen::Index joint) const noexcept {
+    const auto j = static_cast<std::size_t>(joint);
+    const Restart& last = restart_[j];
+    const bool reading = settled(joint);
+    const double most = bounds_.speed.size() > 0 ? bounds_.speed[joint] : std::numeric_limits<double>::max();
+    const double velocity = std::clamp(reading ? velocity_[joint] : last.velocity, -most, most);
+    const std::int64_t tick = reading ? newest_tick_[j] : last.tick;
+    const double time_s = period_s_ * static_cast<double>(tick_ - tick);
+    return {(reading ? newest_[joint] : last.position) + velocity * time_s, velocity};
+}
+
+bool PositionFeedback::settled(Eigen::Index joint) const noexcept {
+    const auto j = static_cast<std::size_t>(joint);
+    return !restart_[j].jumped || held_[j] >= settled_readings;
+}
+
+void PositionFeedback::hold_reference(const JointVector& reference) {
+    for (Eigen::Index joint = 0; joint < reference.size(); ++joint) {
+        const auto j = static_cast<std::size_t>(joint);
+        std::fill_n(reference_.begin() + static_cast<std::ptrdiff_t>(j) * window_, window_, reference[joint]);
+        reading_error_[joint] = reference[joint] - newest_[joint];
+        reading_rate_[joint] = -velocity_[joint];
+        restart_[j].error = reference[joint] - restart_[j].position;
+        restart_[j].rate = -restart_[j].velocity;
+    }
 }
 
 double PositionFeedback::error_at(Eigen::Index joint, std::int64_t tick) const noexcept {
@@ -205,6 +250,10 @@ bool PositionFeedback::known() const noexcept {
 }
 
 bool PositionFeedback::complete() const noexcept { return longest_silence() == 0; }
+
+bool PositionFeedback::regular(Eigen::Index joint) const noexcept {
+    return observed(joint) && regular_[static_cast<std::size_t>(joint)];
+}
 
 bool PositionFeedback::regular() const noexcept {
     return complete() && std::ranges::all_of(regular_, [](bool regular) { return regular; });

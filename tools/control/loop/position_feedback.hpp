@@ -42,6 +42,13 @@ class PositionFeedback {
   public:
     static constexpr int fade_ticks = 10;
     static constexpr int bridged_ticks = 2;
+    /// readings in a row, that together need no impossible acceleration: then a jump is the joint's position
+    static constexpr int settled_readings = 3;
+
+    struct JointMotion {
+        double position; ///< rad
+        double velocity; ///< rad/s
+    };
 
     PositionFeedback(FeedbackGains gains, const DerivativeModel& filter, double period_s,
                      MotionBounds bounds = {});
@@ -59,6 +66,10 @@ class PositionFeedback {
     /// a jump of a reading.
     void move_reference(const JointVector& distance);
 
+    /// From now on the reference rests at `reference`, rad: the readings so far count as readings beside it,
+    /// so that a moving joint does not look like a jump.
+    void hold_reference(const JointVector& reference);
+
     /// Returns the feedback torque, N·m.
     JointVector torque() const;
 
@@ -71,6 +82,15 @@ class PositionFeedback {
     const JointVector& position() const noexcept { return position_; }
     /// Velocity at the last readings, rad/s.
     const JointVector& velocity() const noexcept { return velocity_; }
+    /// Returns the motion of `joint` at this tick, extrapolated from its last believed reading: the one
+    /// before a jump that has not settled. The velocity is within the joint's speed bound.
+    JointMotion believed_motion(Eigen::Index joint) const noexcept;
+    /// Returns whether the last reading of `joint` is believed: no jump, or one with `settled_readings`.
+    bool settled(Eigen::Index joint) const noexcept;
+    /// Returns whether the readings of `joint` jumped and have not returned to the motion before.
+    bool jumped(Eigen::Index joint) const noexcept {
+        return restart_[static_cast<std::size_t>(joint)].jumped;
+    }
     /// Smallest step between two successive readings of `joint` so far, rad: its encoder's count. 0: none.
     double smallest_step(Eigen::Index joint) const noexcept { return smallest_step_[joint]; }
     /// Noise bound that the filter was given, rad.
@@ -94,6 +114,9 @@ class PositionFeedback {
     bool known() const noexcept;
     /// Returns whether every joint has a reading of this tick.
     bool complete() const noexcept;
+    /// Returns whether `joint` has a reading of this tick, one tick after its previous one and within the
+    /// bounds.
+    bool regular(Eigen::Index joint) const noexcept;
     /// Returns whether the tick is complete, each reading follows its joint's previous one by one tick, and
     /// all accelerations are within the bounds.
     bool regular() const noexcept;
@@ -104,6 +127,7 @@ class PositionFeedback {
     /// Last reading before the restart of a joint's window, and the motion at its time.
     struct Restart {
         std::int64_t tick = -1; ///< -1: none
+        double position = 0;    ///< rad
         double velocity = 0;    ///< rad/s
         double error = 0;       ///< reference minus reading, rad
         double rate = 0;        ///< of the error, rad/s
@@ -117,6 +141,8 @@ class PositionFeedback {
     double reachable(Eigen::Index joint, std::int64_t tick, double velocity) const noexcept;
     bool plausible(Eigen::Index joint, std::int64_t tick, double position,
                    const Reference& reference) const noexcept;
+    /// Returns whether `position` and the last two readings after a jump need no impossible acceleration.
+    bool continues(Eigen::Index joint, std::int64_t tick, double position) const noexcept;
     /// Error and its rate at `tick`, extrapolated from a joint's last reading.
     double error_at(Eigen::Index joint, std::int64_t tick) const noexcept;
     double rate_at(Eigen::Index joint, std::int64_t tick) const noexcept;

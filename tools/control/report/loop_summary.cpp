@@ -35,6 +35,17 @@ void print_actions(std::ostream& out, const std::vector<TakenAction>& actions) {
     }
 }
 
+void print_lead_in(std::ostream& out, const ControlLoop& loop) {
+    const JointVector& offset = loop.start_offset();
+    if (loop.lead_in_s() > 0) {
+        Eigen::Index joint = 0;
+        const double largest = offset.cwiseAbs().maxCoeff(&joint);
+        out << "start: the arm was beside the motion, joint " << joint + 1 << " by "
+            << formatted("%.3g", largest) << " rad or m; led in within "
+            << formatted("%.1f", loop.lead_in_s()) << " s\n";
+    }
+}
+
 void print_vibrations(std::ostream& out, const ControlLoop& loop) {
     const JointVector share = loop.bandwidth_share();
     for (Eigen::Index joint = 0; joint < loop.bandwidth().size(); ++joint) {
@@ -65,6 +76,7 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
         print_learning(out, *learned);
     }
+    print_lead_in(out, loop);
     print_vibrations(out, loop);
     print_actions(out, loop.actions());
 }
@@ -126,6 +138,7 @@ nlohmann::ordered_json loop_json(const std::string& name, const ControlLoop& loo
                                 {"limp", loop.limp()},
                                 {"largest_torque_step_nm", values_of(peaks.torque_step())},
                                 {"largest_speed_rad_s", values_of(peaks.speed())},
+                                {"start_offset_rad", values_of(loop.start_offset())},
                                 {"observer_bandwidth_share", values_of(loop.bandwidth_share())},
                                 {"learning", nullptr},
                                 {"actions", nlohmann::ordered_json::array()}};

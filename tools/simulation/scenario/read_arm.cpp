@@ -53,7 +53,7 @@ RobotErrors read_robot_errors(const ScenarioReader& reader) {
         return errors;
     }
     const ScenarioReader arm = reader.object("arm");
-    arm.allow_only({"links", "tilt_rad", "springs"});
+    arm.allow_only({"links", "tilt_rad", "springs", "start_offset_rad"});
     if (arm.json().has("links")) {
         for (const JsonReader& entry : arm.json().objects("links", 0, 100)) {
             errors.links.push_back(read_link_error(entry, reader.joint_count()));
@@ -65,6 +65,10 @@ RobotErrors read_robot_errors(const ScenarioReader& reader) {
         errors.tilt_y = tilt[1];
     }
     return errors;
+}
+
+JointVector read_start_offset(const ScenarioReader& reader) {
+    return reader.json().has("arm") ? reader.object("arm").per_joint("start_offset_rad", 0) : JointVector();
 }
 
 JointLoads read_joint_loads(const ScenarioReader& reader) {

@@ -196,6 +196,10 @@ ScenarioChain read_scenario_chain(const std::filesystem::path& path) {
     return result;
 }
 
+JointVector start_position(const Scenario& scenario, const JointVector& first) {
+    return scenario.start_offset.size() > 0 ? JointVector(first + scenario.start_offset) : first;
+}
+
 Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
     check_joint_count(robot);
     const nlohmann::json json = load(path);
@@ -214,6 +218,7 @@ Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
     scenario.torque_sensor = read_torque_sensor(reader.object("actuators"));
     scenario.robot_errors = read_robot_errors(reader);
     scenario.loads = read_joint_loads(reader);
+    scenario.start_offset = read_start_offset(reader);
     if (reader.object("recording").json().has("noise")) {
         scenario.output_noise = read_output_noise(reader.object("recording").object("noise"));
     }

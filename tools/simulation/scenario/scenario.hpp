@@ -41,6 +41,7 @@ struct Scenario {
     ControllerModel controller;
     RobotErrors robot_errors; ///< unknown to the controller
     JointLoads loads;         ///< unknown to the controller
+    JointVector start_offset; ///< rad: where the arm starts, minus the first reference; empty: 0
     ActuatorModel actuators;
     std::vector<Payload> payloads; ///< in chronological order
     std::vector<Fault> faults;     ///< each with its own start time
@@ -50,6 +51,9 @@ struct Scenario {
     DerivativeModel derivatives;
     std::optional<WrenchSensorModel> force_torque;
 };
+
+/// Returns where the arm of `scenario` starts, rad. `first`: the task's first reference.
+JointVector start_position(const Scenario& scenario, const JointVector& first);
 
 /// The part of the robot's URDF that a scenario uses.
 struct ScenarioChain {

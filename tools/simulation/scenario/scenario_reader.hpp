@@ -57,6 +57,7 @@ TorqueSensorModel read_torque_sensor(const ScenarioReader& reader);
 
 /// Sections of the whole scenario: deviations of the arm from its description, and external loads.
 RobotErrors read_robot_errors(const ScenarioReader& reader);
+JointVector read_start_offset(const ScenarioReader& reader);
 JointLoads read_joint_loads(const ScenarioReader& reader);
 std::vector<Payload> read_payloads(const JsonReader& reader);
 

@@ -23,7 +23,11 @@ TEST_CASE("no command exceeds the torque limit and commands at the limit are cou
     Scenario scenario = pendulum_scenario();
     scenario.actuators.torque_limit = JointVector::Constant(1, 1);
     Bench bench(scenario, {{0.5}, {}, StopMode::hold});
-    bench.position()[0] -= 0.2; // 10 N·m of feedback
+    bench.tick();
+    for (int tick = 0; tick < 20; ++tick) {
+        bench.position()[0] -= 0.01; // up to 10 N·m of feedback
+        bench.tick();
+    }
     CHECK(bench.tick() == 1);
     double last = 1;
     for (int tick = 0; tick < 90; ++tick) {
@@ -36,12 +40,40 @@ TEST_CASE("no command exceeds the torque limit and commands at the limit are cou
     CHECK(bench.loop().counters().limited >= 20);
 }
 
-TEST_CASE("the first command of an arm beside its start adds at most a tenth of the limit to the weight") {
+TEST_CASE("an arm beside its start is led in slowly from where it is, and then the motion begins") {
     Bench bench(pendulum_scenario());
-    const double at_start = weight(bench.position()[0]);
+    const double start = bench.position()[0];
     bench.position()[0] -= 0.1; // 5 N·m of feedback
-    CHECK(bench.tick() == Approx(at_start + 2).margin(0.01));
-    CHECK(bench.tick() == Approx(at_start + 4).margin(0.1));
+    const double weight_there = weight(bench.position()[0]);
+    CHECK(bench.tick() == Approx(weight_there).margin(0.01));
+    CHECK(bench.loop().start_offset()[0] == Approx(-0.1));
+    const auto& reference = [&]() -> const Reference& { return bench.loop().reference(); };
+    double before = reference().position[0];
+    CHECK(before == Approx(start - 0.1));
+    for (int tick = 1; tick < 750; ++tick) { // 1.875 · 0.1 rad / 0.25 rad/s
+        bench.position() = reference().position;
+        bench.tick();
+        const double step = reference().position[0] - before;
+        CHECK(step >= -1e-12);
+        CHECK(step <= PausableTask::lead_in_speed * 0.001 + 1e-12);
+        CHECK(reference().velocity[0] == Approx(step / 0.001).margin(1e-3));
+        before = reference().position[0];
+    }
+    CHECK(before == Approx(start).margin(1e-6));
+    for (int tick = 0; tick < 1000; ++tick) {
+        bench.position() = reference().position;
+        bench.tick();
+    }
+    CHECK(std::abs(reference().position[0] - start) > 0.01);
+    CHECK(bench.loop().state() == LoopState::running);
+}
+
+TEST_CASE("an arm that the position gain holds with a twentieth of the limit is not led in") {
+    Bench bench(pendulum_scenario());
+    bench.position()[0] -= 0.019; // 0.95 of 20 N·m
+    bench.tick();
+    CHECK(bench.loop().start_offset()[0] == 0);
+    CHECK(bench.loop().lead_in_s() == 0);
 }
 
 TEST_CASE("the loop applies no torque to an arm that is away from the start of the motion") {

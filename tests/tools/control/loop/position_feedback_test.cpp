@@ -12,9 +12,9 @@ using namespace dfdyn::tools;
 
 constexpr double period_s = 0.002, speed = 1.5, kp = 900, kd = 90;
 
-PositionFeedback feedback(double noise_bound = 1e-6, double acceleration = 100) {
+PositionFeedback feedback(double noise_bound = 1e-6, double acceleration = 100, int velocity_window = 10) {
     DerivativeModel filter;
-    filter.velocity_window = 10;
+    filter.velocity_window = velocity_window;
     filter.noise_bound = noise_bound;
     return {{JointVector::Constant(2, kp), JointVector::Constant(2, kd)},
             filter,
@@ -29,8 +29,8 @@ Reference reference(int tick) {
 }
 JointVector position(int tick) { return reference(tick).position.array() - 0.01; }
 
-PositionFeedback after(int ticks) {
-    PositionFeedback result = feedback();
+PositionFeedback after(int ticks, int velocity_window = 10) {
+    PositionFeedback result = feedback(1e-6, 100, velocity_window);
     for (int tick = 0; tick < ticks; ++tick) {
         result.advance();
         result.observe(0, position(tick), reference(tick));
@@ -175,6 +175,69 @@ TEST_CASE("a reading that would need an impossible acceleration is reported as i
     loop.advance();
     loop.observe(0, position(21).array() + 0.01, reference(21));
     CHECK_FALSE(loop.regular());
+}
+
+TEST_CASE("a jump is not believed until it has lasted, also with a velocity window of two readings") {
+    const int window = GENERATE(2, 10), length = GENERATE(1, 2, 3);
+    CAPTURE(window, length);
+    PositionFeedback loop = after(20, window);
+    for (int tick = 20; tick < 20 + length; ++tick) {
+        loop.advance();
+        JointVector jumped = position(tick);
+        jumped[1] += 0.6;
+        loop.observe(0, jumped, reference(tick));
+        CHECK(loop.settled(0));
+        CHECK(loop.settled(1) == (tick == 22));
+        const double expected = position(tick)[1] + (tick == 22 ? 0.6 : 0);
+        CHECK(loop.believed_motion(1).position == Approx(expected).margin(1e-9));
+        CHECK(loop.believed_motion(1).velocity == Approx(speed).epsilon(1e-6));
+    }
+    if (length < 3) {
+        loop.advance();
+        loop.observe(0, position(20 + length), reference(20 + length));
+        CHECK(loop.settled(1));
+        CHECK(loop.believed_motion(1).position == Approx(position(20 + length)[1]));
+        CHECK(loop.believed_motion(1).velocity == Approx(speed));
+    }
+}
+
+TEST_CASE("wrong readings that contradict each other are not believed") {
+    PositionFeedback loop = after(20);
+    const double jumps[]{0.6, -0.4, 0.9, -0.7, 0.3};
+    for (int tick = 20; tick < 25; ++tick) {
+        loop.advance();
+        JointVector reading = position(tick);
+        reading[0] += jumps[tick - 20];
+        loop.observe(0, reading, reference(tick));
+        CHECK_FALSE(loop.settled(0));
+        CHECK_FALSE(loop.regular(0));
+        CHECK(loop.believed_motion(0).position == Approx(position(tick)[0]));
+    }
+}
+
+TEST_CASE("a moving joint does not jump when its reference comes to rest at once") {
+    PositionFeedback loop = after(20); // 1.5 rad/s, with an acceleration of at most 100 rad/s²
+    const Reference rest{reference(19).position, JointVector::Zero(2), JointVector::Zero(2)};
+    loop.hold_reference(rest.position);
+    for (int tick = 20; tick < 24; ++tick) {
+        loop.advance();
+        loop.observe(0, position(tick), rest);
+        CHECK(loop.settled(0));
+        CHECK(loop.regular(0));
+        CHECK(loop.believed_motion(0).position == Approx(position(tick)[0]));
+    }
+}
+
+TEST_CASE("of two wrong readings with a right one between them neither is believed") {
+    PositionFeedback loop = after(20);
+    for (int tick = 20; tick < 23; ++tick) {
+        loop.advance();
+        JointVector reading = position(tick);
+        reading[0] += tick == 21 ? 0 : 0.6;
+        loop.observe(0, reading, reference(tick));
+        CHECK(loop.settled(0) == (tick == 21));
+        CHECK(loop.believed_motion(0).position == Approx(position(tick)[0]));
+    }
 }
 
 TEST_CASE("one or two rounded readings beside the others hardly change the velocity") {

@@ -192,6 +192,7 @@ TEST_CASE("deviations from the robot's description are read or rejected if they 
     scenario["recording"]["noise"] = {{"torque_nm", 0.2}, {"coefficient", 0.9}};
     scenario["arm"] = {{"links", {{{"link", 1}, {"delta_mass_kg", 0.2}, {"delta_centre_m", {0, 0, 0.01}}}}},
                        {"tilt_rad", {0.01, -0.02}},
+                       {"start_offset_rad", -0.1},
                        {"springs", {{"stiffness_nm_per_rad", 3}, {"rest_rad", 0.5}}}};
     scenario["contacts"] = {{{"start_s", 1}, {"end_s", 2}, {"joint", 1}, {"peak_nm", -4}},
                             {{"start_s", 3}, {"end_s", 5}, {"force_n", {1, 2, 3}}}};
@@ -217,6 +218,7 @@ TEST_CASE("deviations from the robot's description are read or rejected if they 
     CHECK(read_back.robot_errors.links.at(0).delta_centre.z() == 0.01);
     CHECK(read_back.robot_errors.tilt_y == -0.02);
     CHECK(read_back.loads.springs->rest[0] == 0.5);
+    CHECK(read_back.start_offset[0] == -0.1);
     CHECK(read_back.loads.ripple->cycles[0] == 6);
     CHECK(read_back.loads.contacts.at(0).joint == 0);
     CHECK(read_back.loads.contacts.at(0).peak == -4);
