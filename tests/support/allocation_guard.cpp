@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/allocation_guard.hpp"
 
+#include "tests/support/slow_build.hpp"
+
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
-
-#if defined(__SANITIZE_ADDRESS__)
-#define DFDYN_HEAP_HOOKS 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define DFDYN_HEAP_HOOKS 1
-#endif
-#endif
 
 namespace {
 
@@ -30,7 +24,7 @@ dfdyn::tests::HeapCalls heap_calls() noexcept { return {allocations.load(), rele
 
 } // namespace
 
-#ifdef DFDYN_HEAP_HOOKS
+#ifdef DFDYN_ADDRESS_SANITIZER
 
 // As in <sanitizer/allocator_interface.h>, which GCC's packages leave out.
 // NOLINTNEXTLINE(bugprone-reserved-identifier, readability-identifier-naming)

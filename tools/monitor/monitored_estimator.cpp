@@ -9,7 +9,6 @@
 #include "tools/model/chain_model.hpp"
 #include "tools/model/run_time/estimator_decorator.hpp"
 #include "tools/model/run_time/host_model.hpp"
-#include "tools/monitor/change_words.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -13,6 +13,8 @@
 
 namespace dfdyn::tools {
 
+struct MonitorSetup;
+
 /// One parameter of a change, with its unit.
 struct ChangeParameter {
     std::string name, unit;
@@ -36,6 +38,10 @@ struct RecordedChanges {
     double origin_s = 0;
     std::vector<NamedChange> changes;
 };
+
+/// Returns a change with the names and units of the arm.
+NamedChange named(const Change<float, dynamic>& change, const MonitorSetup& setup);
+NamedChange named(const Change<float, 6>& change, const MonitorSetup& setup);
 
 /// Prints a line for each change.
 void print_changes(std::ostream& out, const RecordedChanges& recorded);

@@ -52,11 +52,15 @@ class InnovationGate {
           fall_(std::min<Scalar>(1 - Scalar(0.002) / Scalar(std::max<std::int32_t>(patience, 2)),
                                  1 - std::numeric_limits<Scalar>::epsilon())) {}
 
-    /// Starts a new motion with an empty count. Keeps the level and an unreported change, as if it had just
-    /// been reported: what the last motion found also applies to the samples of this one.
+    /// Starts a new motion. Forgets contradictions that are no change yet. Keeps the level and a change that
+    /// has not settled, and an unreported one as if it had just been detected: what the last motion found
+    /// also applies to the samples of this one.
     constexpr void restart() noexcept {
-        changed_ = change_pending_ && patience_ > 0;
-        count_ = changed_ ? settling * patience_ : 0;
+        if (change_pending_) {
+            report_change();
+        } else if (!changed_) {
+            count_ = 0;
+        }
         alarmed_ = false;
     }
 

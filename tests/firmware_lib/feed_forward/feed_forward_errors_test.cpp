@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a feed-forward compares the errors of forecasts, and what a tick costs.
-#include "tests/firmware_lib/feed_forward/told_learner.hpp"
+#include "tests/firmware_lib/feed_forward/scripted_learner.hpp"
 #include "tests/firmware_lib/support/counted.hpp"
 #include "tests/support/catch.hpp"
 
@@ -14,11 +14,11 @@ namespace feed_forward_errors_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
-using namespace dfdyn::tests::told;
+using namespace dfdyn::tests::scripted;
 
 /// A feed-forward with an observer.
 struct ObservedRun {
-    ToldLearner learner;
+    ScriptedLearner learner;
     Forward forward;
     bool compares = true;
     int tick = 0;
@@ -183,7 +183,7 @@ TEST_CASE("a nominal torque that is not finite is replaced by the last finite on
 TEST_CASE("settings outside their ranges give no torque") {
     const double nominal = 10;
     const auto torque_with = [&](const Forward::Settings& wrong) {
-        ToldLearner learner;
+        ScriptedLearner learner;
         Forward forward(learner, wrong);
         CHECK_FALSE(forward.settings_valid());
         constexpr double start = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a feed-forward treats each joint by itself, and commands and positions that do not come at the knots.
-#include "tests/firmware_lib/feed_forward/told_learner.hpp"
+#include "tests/firmware_lib/feed_forward/scripted_learner.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace feed_forward_joints_test {
 
 using namespace dfdyn;
-using namespace dfdyn::tests::told;
+using namespace dfdyn::tests::scripted;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -100,7 +100,7 @@ TEST_CASE("a joint without a forecast at a knot leaves the learned part of anoth
 TEST_CASE("positions and commands in every second tick are learned and compared, in any phase") {
     for (const int phase : {0, 1}) {
         CAPTURE(phase);
-        ToldLearner learner;
+        ScriptedLearner learner;
         Forward forward(learner, settings);
         constexpr double start = 0;
         forward.begin(0, &start);
@@ -118,7 +118,7 @@ TEST_CASE("positions and commands in every second tick are learned and compared,
 }
 
 TEST_CASE("samples without a lost one between them are one sample period apart") {
-    ToldLearner learner;
+    ScriptedLearner learner;
     Forward forward(learner, settings);
     constexpr double start = 0;
     forward.begin(0, &start);

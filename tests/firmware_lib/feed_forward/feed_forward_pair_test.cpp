@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a feed-forward chooses among several forecasts, known and unknown.
 #include "dfdyn/control/learner_pair.hpp"
-#include "tests/firmware_lib/feed_forward/told_learner.hpp"
+#include "tests/firmware_lib/feed_forward/scripted_learner.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 namespace feed_forward_pair_test {
 
 using namespace dfdyn;
-using namespace dfdyn::tests::told;
+using namespace dfdyn::tests::scripted;
 
 /// Two learners in a loop whose final command is 50 N·m, with a nominal torque of 10 N·m.
 struct PairRun {
-    using Pair = LearnerPair<ToldLearner, ToldLearner>;
+    using Pair = LearnerPair<ScriptedLearner, ScriptedLearner>;
 
-    ToldLearner first, second;
+    ScriptedLearner first, second;
     Pair pair{first, second};
     FeedForward<Pair> forward{pair, {period_ns, ticks_per_sample, {{100}}, {{90}}, {{2000}}}};
     double last = 0;
@@ -31,8 +31,8 @@ struct PairRun {
     }
 
     /// The learners: first the one that a test lets the feed-forward use, which forecasts 50 N·m.
-    std::array<ToldLearner*, 2> used_and_other(bool first_is_used) {
-        ToldLearner* const used = first_is_used ? &first : &second;
+    std::array<ScriptedLearner*, 2> used_and_other(bool first_is_used) {
+        ScriptedLearner* const used = first_is_used ? &first : &second;
         used->forecast = 50;
         return {used, first_is_used ? &second : &first};
     }
@@ -111,11 +111,11 @@ TEST_CASE("an absurd forecast moves a joint no further than a forecast at its to
 }
 
 TEST_CASE("learners with different numbers of forecasts form a pair, and unknown forecasts are NaN") {
-    ToldLearner first, second, third;
-    using Two = LearnerPair<ToldLearner, ToldLearner>;
+    ScriptedLearner first, second, third;
+    using Two = LearnerPair<ScriptedLearner, ScriptedLearner>;
     Two two(first, second);
-    LearnerPair<Two, ToldLearner> three(two, third);
-    LearnerPair<ToldLearner, Two> reversed(third, two);
+    LearnerPair<Two, ScriptedLearner> three(two, third);
+    LearnerPair<ScriptedLearner, Two> reversed(third, two);
     first.forecast = 1;
     second.forecast = 2;
     third.forecast = 3;

@@ -2,7 +2,7 @@
 #include "dfdyn/control/feed_forward.hpp"
 
 #include "tests/firmware_lib/control/joint.hpp"
-#include "tests/firmware_lib/feed_forward/told_learner.hpp"
+#include "tests/firmware_lib/feed_forward/scripted_learner.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 
@@ -17,7 +17,7 @@ namespace feed_forward_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
-using namespace dfdyn::tests::told;
+using namespace dfdyn::tests::scripted;
 
 Reference<double, 1> reference_at(double time_s) {
     return {{{std::sin(time_s)}}, {{std::cos(time_s)}}, {{-std::sin(time_s)}}};
@@ -25,7 +25,7 @@ Reference<double, 1> reference_at(double time_s) {
 
 /// Runs a feed-forward in a loop whose final command is `needed`.
 struct Run {
-    ToldLearner learner;
+    ScriptedLearner learner;
     Forward forward{learner, settings};
     std::int64_t tick = 0;
     double last = 0;
@@ -187,7 +187,7 @@ class LoadedJoint {
   private:
     static constexpr JointLoop<double> servo{2, 800, 80, 0, 0};
 
-    ToldLearner learner_;
+    ScriptedLearner learner_;
     Forward forward_{learner_, settings};
     ServoJoint joint_{servo, period_s / 20};
     std::int64_t tick_ = 0;

@@ -154,7 +154,12 @@ TEST_CASE("a change reported before a motion begins keeps the full weight of the
     gate.restart();
     CHECK(gate.judge(pushed) == 1);
     CHECK(gate.take_change());
-    gate.restart(); // the change has been reported: the next motion is judged as usual
+    gate.restart(); // the change has been reported, but has not settled
+    CHECK(gate.judge(pushed) == 1);
+    for (int t = 0; t < 5 * patience; ++t) {
+        static_cast<void>(gate.judge(plausible));
+    }
+    gate.restart();
     CHECK(gate.judge(pushed) == 0);
     Gate without(limit, 0);
     without.report_change();

@@ -277,7 +277,7 @@ TEST_CASE("false alarms raise the limit of their kind", "[monitor]") {
     while (!step(detector, innovations, engine, {.shift = 2})) {
     }
     const double limit = detector.limit(detector.departure());
-    detector.nothing_happened();
+    detector.report_false_alarm();
     detector.restart();
     step(detector, innovations, engine);
     CHECK(detector.limit(detector.departure()) > limit + 0.5);

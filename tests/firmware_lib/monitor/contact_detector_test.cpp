@@ -279,6 +279,35 @@ TEST_CASE("a second push is a contact of its own if the error of the model remai
     CHECK(arm.contacts == 2);
 }
 
+TEST_CASE("samples that are read twice neither hide a push nor end it", "[contacts]") {
+    const bool skipped = GENERATE(false, true); // as by an estimator that refuses a repeated stamp
+    CAPTURE(skipped);
+    Arm arm;
+    const double q[2]{};
+    while (arm.time_s() < 4) {
+        arm.run(0.5e-9 * period_ns, still, push(2, 2.5)); // one tick
+        if (skipped) {
+            arm.detector.skip(arm.time_ns);
+        } else {
+            CHECK(arm.detector.tick(arm.time_ns, q, q, q) == arm.detector.contact());
+        }
+    }
+    CHECK(arm.contacts == 1);
+    CHECK(arm.first_s == Approx(2.05).margin(0.05));
+}
+
+TEST_CASE("a stamp that does not advance any more ends a contact", "[contacts]") {
+    Arm arm;
+    arm.run(2.2, still, push(2, 2.5));
+    REQUIRE(arm.detector.contact());
+    const double q[2]{};
+    for (int t = 0; t < Detector::most_repeats; ++t) {
+        CHECK(arm.detector.tick(arm.time_ns, q, q, q));
+    }
+    CHECK_FALSE(arm.detector.tick(arm.time_ns, q, q, q));
+    CHECK_FALSE(arm.detector.running());
+}
+
 TEST_CASE("non-finite values and wrong stamps neither cause a contact nor disable the detector",
           "[contacts]") {
     using Limits = std::numeric_limits<double>;

@@ -28,11 +28,11 @@ TEMPLATE_TEST_CASE("the monitor reports cause, place and size of a change withou
     Swinging<TestType> arm({cause, from_s, cause == Cause::contact ? from_s + 1.5 : 1e9});
     const AllocationGuard guard;
     const int early = run(monitor, arm, from_s, engine);
-    const int news = run(monitor, arm, from_s + 30, engine);
+    const int updates = run(monitor, arm, from_s + 30, engine);
     const HeapCalls calls = guard.calls();
     CHECK(calls.allocations == 0);
     REQUIRE(early == 0);
-    REQUIRE(news > 0);
+    REQUIRE(updates > 0);
     const auto& change = monitor.change();
     CHECK(name(change.cause) == std::string(name(cause)));
     CHECK(change.confidence > TestType(0.8));

@@ -190,14 +190,14 @@ class Swinging {
 /// Runs until a change is over, but at most until `until_s`; returns the number of reports.
 template <class Scalar>
 int run(TestMonitor<Scalar>& monitor, Swinging<Scalar>& arm, double until_s, std::mt19937_64& engine) {
-    int news = 0;
+    int updates = 0;
     while (arm.time_s() < until_s) {
-        news += arm.step(monitor, engine) ? 1 : 0;
-        if (news > 0 && !monitor.changing()) {
+        updates += arm.step(monitor, engine) ? 1 : 0;
+        if (updates > 0 && !monitor.changing()) {
             break;
         }
     }
-    return news;
+    return updates;
 }
 
 } // namespace dfdyn::tests::monitored

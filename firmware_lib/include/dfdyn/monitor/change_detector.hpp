@@ -38,7 +38,7 @@ inline constexpr int departure_count = 6;
 /// The threshold of each kind follows from its own excursions (`FalseAlarmThreshold`). All kinds together
 /// exceed their thresholds at most once in `blocks_between_false_alarms` while the innovations are
 /// stationary. The onset is the block in which the sum that raised the alarm last left zero. The alarm ends
-/// when every sum is below half its threshold: the change was learned or has passed. `nothing_happened`
+/// when every sum is below half its threshold: the change was learned or has passed. `report_false_alarm`
 /// reports a false alarm.
 ///
 /// Cost per block: `cost(m)`. Memory: about 55 m numbers.
@@ -130,7 +130,7 @@ class ChangeDetector {
     }
 
     /// Reports that the last alarm was false: its excursion is added to the usual ones.
-    void nothing_happened() noexcept {
+    void report_false_alarm() noexcept {
         FalseAlarmThreshold<Scalar>& tail = tails_[static_cast<int>(departure())];
         tail.add(limits_[static_cast<int>(departure())]);
     }
@@ -294,7 +294,7 @@ class ChangeDetector {
             set_limits();
         }
         if (settled_ == settling_blocks) {
-            look();
+            raise_alarm();
         }
     }
 
@@ -305,7 +305,7 @@ class ChangeDetector {
     }
 
     /// Raises the alarm of the sum with the largest ratio to its threshold, if one exceeds it.
-    void look() noexcept {
+    void raise_alarm() noexcept {
         Scalar farthest = 1;
         for (int index = 0; index < sums_.size(); ++index) {
             const Scalar share = sums_[index].sum / limits_[static_cast<int>(kind_of(index))];

@@ -47,6 +47,7 @@ class ContactDetector {
     static constexpr Scalar release_s = Scalar(0.1);     ///< time below either that ends a contact, s
     static constexpr Scalar longest_s = 3;               ///< longest contact, s; then a change of the arm
     static constexpr Scalar longest_gap_s = Scalar(0.1); ///< between two stamps, s; a longer one interrupts
+    static constexpr int most_repeats = 100;             ///< of one stamp, in a row; more interrupt
     static constexpr Scalar settling_s = Scalar(0.5);    ///< after an interruption without contacts, s
     static constexpr Scalar most_range = 20; ///< an encoder's jump then masks contacts for a second only
     static constexpr Scalar largest_position = 10'000; ///< rad; a larger one is no position
@@ -62,10 +63,14 @@ class ContactDetector {
 
     /// Adds the positions (rad), errors and predictions (the outputs' unit) at a stamp. Returns true during a
     /// contact. Values that are not finite, and positions beyond ± `largest_position`, interrupt. After a
-    /// gap, or if the stamp does not increase, the comparison starts anew with these values, and a contact
-    /// ends.
+    /// gap, or if the stamp decreases, the comparison starts anew with these values, and a contact ends. A
+    /// sample with the stamp of the last one is ignored, up to `most_repeats` in a row: a sensor slower than
+    /// the loop, or a repeated frame.
     bool tick(std::int64_t time_ns, const Scalar* position, const Scalar* error,
               const Scalar* prediction) noexcept {
+        if (repeats(time_ns)) {
+            return contact_;
+        }
         const Scalar dt = since_last(time_ns);
         time_ns_ = time_ns;
         if (!valid(position, error, prediction)) {
@@ -95,11 +100,11 @@ class ContactDetector {
     }
 
     /// Registers a tick without a prediction or a measurement, at `time_ns` by the clock of the stamps.
-    /// Interrupts only after `longest_gap_s` without one, or if the stamp does not advance: until then a
-    /// contact stays. A lost sample also costs an estimator the length of its window, which must be shorter
+    /// Interrupts only after `longest_gap_s` without one, or if the stamp decreases: until then a contact
+    /// stays. A lost sample also costs an estimator the length of its window, which must be shorter
     /// than `longest_gap_s` for this to help. O(1).
     void skip(std::int64_t time_ns) noexcept {
-        if (time_ns <= time_ns_ || since_last(time_ns) > longest_gap_s) {
+        if (!repeats(time_ns) && (time_ns < time_ns_ || since_last(time_ns) > longest_gap_s)) {
             interrupt();
         }
     }
@@ -228,6 +233,15 @@ class ContactDetector {
         persistent_ = true;
     }
 
+    /// Returns whether a stamp repeats the last one; interrupts if it does so too often.
+    bool repeats(std::int64_t time_ns) noexcept {
+        repeats_ = running_ && time_ns == time_ns_ ? repeats_ + 1 : 0;
+        if (repeats_ > most_repeats) {
+            interrupt();
+        }
+        return repeats_ > 0;
+    }
+
     [[no_unique_address]] Extent<joints> count_;
     const ContactLimits<Scalar>* limits_;
     Storage<Joint, joints> joints_;
@@ -239,6 +253,7 @@ class ContactDetector {
     Scalar range_ = 1; ///< factor of all limits
     int largest_ = 0;  ///< joint of the largest share in `excess_`
     int joint_ = 0;
+    int repeats_ = 0; ///< of the last stamp, in a row
     bool running_ = false;
     bool contact_ = false;
     bool persistent_ = false; ///< the last contact was accepted

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "dfdyn/monitor/cause.hpp"
-#include "dfdyn/monitor/hypothesis_fits.hpp"
+#include "dfdyn/monitor/cause_fits.hpp"
 
 namespace dfdyn {
 
-/// Computes posterior probabilities of the causes of a change from their evidence (`HypothesisFits`) on the
+/// Computes posterior probabilities of the causes of a change from their evidence (`CauseFits`) on the
 /// residuals since its onset: fault isolation by Bayesian model comparison.
 ///
 /// A bias, a friction or a push at a joint may affect some outputs only. Each output therefore uses the
@@ -20,7 +20,7 @@ class HypothesisBank {
     static constexpr Scalar trust = Scalar(0.2);
     static constexpr Scalar far = Scalar(3.5); ///< standard deviations of an unusual residual
     /// Log odds against a contact that persists, and against any other cause that was large and has passed.
-    static constexpr Scalar goes_on = 6;
+    static constexpr Scalar duration_penalty = 6;
     static constexpr Scalar large = 8;                   ///< mean square of residuals, relative to the noise
     static constexpr Scalar payload_reach = Scalar(0.5); ///< m: largest distance of a payload from the tip
     static constexpr Scalar payload_deviations = 2;      ///< least distance of its mass from zero
@@ -49,20 +49,20 @@ class HypothesisBank {
             recent_[k] = mean_push_[k] = 0;
         }
         std::fill_n(mean_force_, force_columns, Scalar(0));
-        loudness_ = loudest_ = 0;
+        energy_ = peak_power_ = 0;
     }
 
     /// Adds a block since the onset and its predecessor, m values each. Cost: `cost_of_add`.
     void add(const Block* now, const Block* before, const Speed& speed) noexcept {
         fits_.add(now, before, speed);
-        Scalar loudness = 0;
+        Scalar energy = 0;
         for (int k = 0; k < outputs_; ++k) {
             const Scalar share = now[k].residual / fits_.noise(k).scale(speed.of(now[k].speed));
             recent_[k] += (std::min(share * share, Scalar(16)) - recent_[k]) / 5;
-            loudness += share * share;
-            loudest_ = std::max(loudest_, recent_[k]);
+            energy += share * share;
+            peak_power_ = std::max(peak_power_, recent_[k]);
         }
-        note_push(loudness);
+        note_push(energy);
     }
 
     /// Writes cause, runner-up, confidence and size into `change`. `frozen`: log odds of a repeated reading,
@@ -85,10 +85,10 @@ class HypothesisBank {
 
     /// Maximum multiply-adds of `add`, `start` and `judge`.
     static constexpr std::int64_t cost_of_add(int outputs) noexcept {
-        return HypothesisFits<Scalar, m>::cost(outputs) + outputs * (function_cost + 4) + 10;
+        return CauseFits<Scalar, m>::cost(outputs) + outputs * (function_cost + 4) + 10;
     }
     static constexpr std::int64_t cost_of_start(int outputs, int count) noexcept {
-        return HypothesisFits<Scalar, m>::cost_of_start(outputs, count);
+        return CauseFits<Scalar, m>::cost_of_start(outputs, count);
     }
     static constexpr std::int64_t cost_of_judge(int outputs) noexcept {
         constexpr int evidences = 20; // evaluations per output, some of them repeated
@@ -101,9 +101,9 @@ class HypothesisBank {
     static constexpr Scalar impossible = 50;
 
     /// Updates the mean force and torque of a push, with the squared residuals as weights.
-    void note_push(Scalar loudness) noexcept {
-        loudness_ += loudness;
-        const Scalar share = loudness_ > 0 ? loudness / loudness_ : Scalar(0);
+    void note_push(Scalar energy) noexcept {
+        energy_ += energy;
+        const Scalar share = energy_ > 0 ? energy / energy_ : Scalar(0);
         for (int i = 0; i < force_columns; ++i) {
             mean_force_[i] += share * (fits_.force.parameters()[i] * fits_.force_scale[i] - mean_force_[i]);
         }
@@ -172,13 +172,14 @@ class HypothesisBank {
         const Scalar none = fits_.nothing.of_all();
         const Scalar contact = std::max(fits_.force.evidence().of_all() - none, gain_of_some(fits_.push));
         const bool passed = ended();
-        const Scalar stays = passed && loudest_ > large ? -goes_on : Scalar(0);
+        const Scalar permanent = passed && peak_power_ > large ? -duration_penalty : Scalar(0);
         set(Cause::unknown, 0);
-        set(Cause::payload,
-            payload_possible() ? stays + trust * (fits_.payload.evidence().of_all() - none) : -impossible);
-        set(Cause::friction, has_friction_ ? stays + trust * gain_of_some(fits_.friction) : -impossible);
-        set(Cause::bias, stays + trust * gain_of_some(fits_.bias));
-        set(Cause::contact, trust * contact - (passed ? Scalar(0) : goes_on));
+        set(Cause::payload, payload_possible()
+                                ? permanent + trust * (fits_.payload.evidence().of_all() - none)
+                                : -impossible);
+        set(Cause::friction, has_friction_ ? permanent + trust * gain_of_some(fits_.friction) : -impossible);
+        set(Cause::bias, permanent + trust * gain_of_some(fits_.bias));
+        set(Cause::contact, trust * contact - (passed ? Scalar(0) : duration_penalty));
         set(Cause::frozen, -impossible);
     }
 
@@ -245,10 +246,10 @@ class HypothesisBank {
 
     [[no_unique_address]] Extent<m> outputs_;
     bool has_friction_;
-    HypothesisFits<Scalar, m> fits_;
+    CauseFits<Scalar, m> fits_;
     Storage<Scalar, m> recent_; ///< mean square of the recent residuals, relative to the noise
-    Scalar loudest_ = 0;        ///< largest `recent_` since the onset, over all outputs
-    Scalar loudness_ = 0;       ///< sum of squared residuals since the onset, relative to the noise
+    Scalar peak_power_ = 0;     ///< largest `recent_` since the onset, over all outputs
+    Scalar energy_ = 0;         ///< sum of squared residuals since the onset, relative to the noise
     Storage<Scalar, m> mean_push_;
     Scalar mean_force_[force_columns] = {};
 };

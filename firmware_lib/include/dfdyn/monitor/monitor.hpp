@@ -26,7 +26,7 @@ namespace dfdyn {
 ///     const auto estimate = estimator.tick(sample, budget);
 ///     if (estimate.status.predicted() && measured) {
 ///         regression.predict_with(held.older(), held_means); // then to the outputs' units
-///         news = monitor.tick(observation);
+///         has_update = monitor.tick(observation);
 ///     } else {
 ///         monitor.interrupt();
 ///     }
@@ -73,7 +73,7 @@ class Monitor {
             return false;
         }
         ++since_refresh_;
-        return take_in(observation.time_ns);
+        return process_block(observation.time_ns);
     }
 
     /// Reports a gap: nothing was measured, or samples are missing. Windows and the current block restart.
@@ -120,21 +120,21 @@ class Monitor {
     [[nodiscard]] int joints() const noexcept { return constants_->sizes.joint_count; }
     [[nodiscard]] int outputs() const noexcept { return constants_->sizes.output_count; }
 
-    bool take_in(std::int64_t time_ns) noexcept {
+    bool process_block(std::int64_t time_ns) noexcept {
         const OutputBlock<Scalar>* const now = blocks_.block(blocks_.newest());
         const OutputBlock<Scalar>* const before =
             blocks_.unbroken() > 1 ? blocks_.block(blocks_.newest() - 1) : nullptr;
         const bool alarm = detector_.add(now, before, constants_->speed);
         const int repeating = repeats();
-        told_frozen_ = repeating < 0 ? -1 : told_frozen_;
-        if (!changing_ && (alarm || (repeating >= 0 && repeating != told_frozen_))) {
+        reported_frozen_ = repeating < 0 ? -1 : reported_frozen_;
+        if (!changing_ && (alarm || (repeating >= 0 && repeating != reported_frozen_))) {
             begin(time_ns, alarm);
         }
-        const bool news = changing_ && follow(time_ns, alarm);
-        if (!changing_ && !news) {
+        const bool has_update = changing_ && follow(time_ns, alarm);
+        if (!changing_ && !has_update) {
             bank_.learn(now, before, constants_->speed);
         }
-        return news;
+        return has_update;
     }
 
     /// Returns the channel with the strongest evidence of a frozen reading beyond chance, or -1.
@@ -150,7 +150,7 @@ class Monitor {
 
     void begin(std::int64_t time_ns, bool alarm) noexcept {
         changing_ = true;
-        told_ = false;
+        reported_ = false;
         frozen_evidence_ = 0;
         const int back = std::min(alarm ? detector_.blocks_since_onset() : 3, history - 2);
         onset_ = next_ = std::max(blocks_.newest() - back + 1, std::int64_t{2});
@@ -180,8 +180,8 @@ class Monitor {
         }
         const std::int64_t age = blocks_.newest() - onset_;
         const bool over = (!alarm && repeats() < 0) || age >= constants_->longest_blocks;
-        const bool time_to_tell = age >= constants_->report_blocks && next_ > blocks_.newest();
-        if (!time_to_tell) {
+        const bool report_due = age >= constants_->report_blocks && next_ > blocks_.newest();
+        if (!report_due) {
             return false;
         }
         const Cause before = change_.cause;
@@ -189,9 +189,9 @@ class Monitor {
         if (over) {
             end(time_ns, alarm);
         }
-        const bool news = over || !told_ || before != change_.cause;
-        told_ = true;
-        return news;
+        const bool has_update = over || !reported_ || before != change_.cause;
+        reported_ = true;
+        return has_update;
     }
 
     /// Fits from the block after the first unusual one: sums may have started to rise by chance before the
@@ -205,15 +205,15 @@ class Monitor {
         }
     }
 
-    void end(std::int64_t time_ns, bool goes_on) noexcept {
+    void end(std::int64_t time_ns, bool alarm) noexcept {
         change_.end_ns = time_ns;
         changing_ = false;
-        told_frozen_ = change_.cause == Cause::frozen ? change_.where : -1;
+        reported_frozen_ = change_.cause == Cause::frozen ? change_.where : -1;
         since_refresh_ = 2 * constants_->refresh_blocks;
         if (by_detector_ && change_.cause == Cause::unknown) {
-            detector_.nothing_happened();
+            detector_.report_false_alarm();
         }
-        if (goes_on) {
+        if (alarm) {
             detector_.adopt();
             bank_.relearn();
         }
@@ -228,9 +228,9 @@ class Monitor {
     Change change_;
     std::int64_t onset_ = 0, next_ = 0, alarm_ = 0;
     int since_refresh_ = 0;
-    int frozen_channel_ = -1, told_frozen_ = -1;
+    int frozen_channel_ = -1, reported_frozen_ = -1;
     Scalar frozen_evidence_ = 0;
-    bool changing_ = false, told_ = false, by_detector_ = false, fitting_ = false;
+    bool changing_ = false, reported_ = false, by_detector_ = false, fitting_ = false;
 };
 
 } // namespace dfdyn

@@ -7,14 +7,14 @@
 #include <limits>
 #include <vector>
 
-namespace dfdyn::tests::told {
+namespace dfdyn::tests::scripted {
 
 inline constexpr std::int64_t period_ns = 2'000'000;
 inline constexpr double period_s = 2e-3;
 inline constexpr int ticks_per_sample = 4;
 
 /// A learner whose predictions the test sets, and which records its calls.
-struct ToldLearner {
+struct ScriptedLearner {
     using Scalar = double;
     static constexpr int outputs = 1;
     static constexpr int forecasts = 1;
@@ -42,7 +42,7 @@ struct ToldLearner {
     std::vector<double> asked_at;
 };
 
-using Forward = FeedForward<ToldLearner>;
+using Forward = FeedForward<ScriptedLearner>;
 inline const Forward::Settings settings{period_ns, ticks_per_sample, {{100}}, {{60}}, {{2000}}};
 
-} // namespace dfdyn::tests::told
+} // namespace dfdyn::tests::scripted
