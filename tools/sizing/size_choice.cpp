@@ -5,6 +5,7 @@
 #include "tools/base/recording/sample_grid.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/replay/output_error.hpp"
@@ -24,8 +25,10 @@ namespace {
 
 constexpr double training_share = 0.7;
 constexpr double same_error = 1.01;
-constexpr std::array<int, 11> feature_counts{10, 16, 25, 40, 63, 100, 160, 250, 400, 630, 1000};
-constexpr int probe_features = 63; ///< during the choice of window and rows
+constexpr std::array<int, 11> feature_counts{
+    least_feature_count, 16, 25, 40, 63, 100, 160, 250, 400, 630, 1000};
+constexpr int probe_features = 63; ///< largest number during the choice of window and rows
+constexpr const char* judging_rows = "the last 30 % of the rows";
 constexpr std::array<double, 4> windows_s{0.04, 0.08, 0.16, 0.32};
 constexpr std::array<int, 3> row_counts{3, 4, 6};
 constexpr std::array<double, 3> memories_s{5, 30, 180};
@@ -56,6 +59,40 @@ double held_out_error(const TrainedModel& model, std::span<const Recording> reco
 
 namespace {
 
+InputError nothing_to_judge(std::span<const Recording> judging, const std::string& rows) {
+    return InputError(shown(judging.front().source) + ": expected an output that changes in " + rows +
+                      ", by which models are compared, found none: record longer, with more varied motion");
+}
+
+/// Returns the largest number of features up to probe_features for which the memory is long enough; the
+/// smallest one if there is none.
+int largest_probe(double forgetting_factor) {
+    int result = least_feature_count;
+    for (const int count : feature_counts) {
+        if (count <= probe_features && forgetting_factor >= least_forgetting_factor(count)) {
+            result = count;
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+void require_varying_outputs(std::span<const Recording> judging, const std::string& rows) {
+    const std::vector<double>& first = judging.front().output.values;
+    const std::size_t outputs = judging.front().output.names.size();
+    for (const Recording& recording : judging) {
+        for (std::size_t element = 0; element < recording.output.values.size(); ++element) {
+            if (recording.output.values[element] != first[element % outputs]) {
+                return;
+            }
+        }
+    }
+    throw nothing_to_judge(judging, rows);
+}
+
+namespace {
+
 bool better(const SizeCandidate& a, const SizeCandidate& b) {
     if (a.needs.tick_operations <= b.needs.tick_operations) {
         return a.error <= same_error * b.error;
@@ -68,7 +105,8 @@ class SizeSearch {
     SizeSearch(std::span<const Recording> recordings, OutputKind outputs, const ModelTraining& training,
                const TargetBudget& budget, const std::function<void()>& on_candidate)
         : split_(split_recordings(recordings, training_share)), outputs_(outputs), training_(training),
-          budget_(budget), on_candidate_(on_candidate), period_s_(sample_period_s(recordings)) {
+          budget_(budget), on_candidate_(on_candidate), period_s_(sample_period_s(recordings)),
+          probe_(largest_probe(training.options.forgetting_factor)) {
         TrainingOptions& options = training_.options;
         options.starts = 1;
         options.likelihood_rows = std::min(options.likelihood_rows, 300);
@@ -77,21 +115,30 @@ class SizeSearch {
 
     SizeChoice run(const FreeSizes& free) {
         TrainingOptions options = training_.options;
+        const bool chooses_rows = free.rows && input_description(options.input).chooses_rows;
+        const bool chooses_features = free.features && options.model->features;
+        const bool compares = free.window || chooses_rows || free.memory || chooses_features;
+        if (compares) {
+            require_varying_outputs(split_.judging, judging_rows);
+        }
         if (free.features) {
-            options.feature_count = probe_features;
+            options.feature_count = probe_;
         }
         best_ = within_budget(options, free.features);
+        if (compares && std::isinf(best_->error)) { // the outputs vary in rows without a prediction only
+            throw nothing_to_judge(split_.judging, judging_rows);
+        }
         if (free.window) {
             choose_window(free.features);
         }
-        if (free.rows && input_description(options.input).chooses_rows) {
+        if (chooses_rows) {
             choose_rows(free.features);
         }
         if (free.memory) {
             choose_memory();
         }
         SizeChoice choice{*best_, {}, {}, {}, 0};
-        if (free.features && options.model->features) {
+        if (chooses_features) {
             choose_features(choice);
         }
         choice.tried = tried_;
@@ -116,8 +163,8 @@ class SizeSearch {
         result.model.limits.innovation = std::numeric_limits<float>::max();
         result.candidate = {options, period_s_ * options.lags * options.every, 0, needs_of(result.model),
                             held_out_error(result.model, split_.judging)};
-        const double lambda = options.forgetting_factor;
-        result.candidate.memory_s = lambda < 1 ? -period_s_ / std::log(lambda) : 0;
+        const double lambda = stored_forgetting_factor(options.forgetting_factor);
+        result.candidate.memory_s = lambda < 1 ? memory_of(lambda, period_s_) : 0;
         return result;
     }
 
@@ -161,12 +208,10 @@ class SizeSearch {
 
     void choose_window(bool fewer_features) {
         const TrainingOptions base = best_->options;
-        const bool contiguous =
-            input_description(base.input).uses_derivatives() || base.hyper == HyperMethod::CV;
+        const int most_lags = needs_contiguous_lags(base) ? largest_lag_count : most_spaced_lags;
         for (const double window_s : windows_s) {
             TrainingOptions options = base;
-            const LagSpacing spacing =
-                spacing_of(window_s, period_s_, 2, contiguous ? largest_lag_count : most_spaced_lags);
+            const LagSpacing spacing = spacing_of(window_s, period_s_, most_lags);
             options.lags = spacing.lags;
             options.every = spacing.every;
             const bool same = options.lags == base.lags && options.every == base.every;
@@ -192,8 +237,9 @@ class SizeSearch {
         const TrainingOptions base = best_->options;
         for (const double memory_s : memories_s) {
             TrainingOptions options = base;
-            options.forgetting_factor = std::exp(-period_s_ / memory_s);
-            if (options.forgetting_factor >= least_forgetting_factor(feature_counts.back())) {
+            options.forgetting_factor = forgetting_factor_of(memory_s, period_s_);
+            const int most_features = std::max(base.feature_count, feature_counts.back());
+            if (options.forgetting_factor >= least_forgetting_factor(most_features)) {
                 consider(options, false);
             }
         }
@@ -206,12 +252,14 @@ class SizeSearch {
         for (const int count : feature_counts) {
             TrainingOptions options = best_->options;
             options.feature_count = count;
+            if (options.forgetting_factor < least_forgetting_factor(count)) {
+                break; // the memory is too short for more features
+            }
             const bool fitting_size = fits(needs_of(with_feature_count(model_, count)), budget_);
             if (!fitting_size && !ladder.empty() && !fits(ladder.back().needs, budget_)) {
                 break; // one candidate beyond the budget is shown
             }
-            if (count < probe_features / 4 &&
-                fits(needs_of(with_feature_count(model_, probe_features)), budget_)) {
+            if (count < probe_ / 4 && fits(needs_of(with_feature_count(model_, probe_)), budget_)) {
                 continue;
             }
             ladder.push_back(trained(options).candidate);
@@ -236,14 +284,13 @@ class SizeSearch {
         choice.larger = best + 1 < ladder.size() ? std::optional(ladder[best + 1]) : std::nullopt;
     }
 
-    static constexpr int most_spaced_lags = 20;
-
     SplitRecordings split_;
     OutputKind outputs_;
     ModelTraining training_;
     TargetBudget budget_;
     const std::function<void()>& on_candidate_;
     double period_s_;
+    int probe_; ///< number of features during the choice of window and rows
     std::optional<SizeCandidate> best_;
     TrainedModel model_; ///< the last model trained: its physics has the right sizes
     ModelNeeds smallest_;

@@ -11,13 +11,14 @@
 #include "tools/training/data/lag_spacing.hpp"
 #include "tools/training/data/recorded_data.hpp"
 #include "tools/training/data/stored_motion.hpp"
-#include "tools/training/physics/machine_size.hpp"
+#include "tools/training/physics/parameter_sizes.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
+#include "tools/training/start/batch_start.hpp"
 #include "tools/training/start/limits.hpp"
-#include "tools/training/start/start_state.hpp"
 #include "tools/training/training_options.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -60,27 +61,18 @@ struct PhysicsColumnsOf {
     std::vector<double> output_gain;
 };
 
-/// Returns the torque gains for currents; empty for other outputs.
-std::vector<TorqueGain> torque_gains(const PreparedTraining& prepared, OutputKind outputs,
-                                     const RobotPhysics& physics) {
-    if (outputs != OutputKind::motor_current) {
-        return {};
-    }
-    if (physics.torque_constants.empty()) {
-        return estimate_torque_gains(physics.robot, prepared.data, physics.sign_velocity);
-    }
-    check_torque_constants(physics.torque_constants, outputs, physics.robot.joints.size());
-    std::vector<TorqueGain> gains;
-    for (const double constant : physics.torque_constants) {
-        gains.push_back({1 / constant, TorqueGain::Source::given});
-    }
-    return gains;
+std::vector<TorqueGain> gains_for(const RobotPhysics& robot, OutputKind outputs, const TrainingData& data) {
+    const auto recorded = [&] {
+        return RecordedMotion{{data.positions, data.velocities, data.accelerations}, data.outputs};
+    };
+    return torque_gains(robot.robot, outputs, robot.torque_constants, recorded, robot.sign_velocity);
 }
 
-std::vector<double> output_gains(const std::vector<TorqueGain>& torque_gains, Index outputs) {
-    std::vector<double> gains(static_cast<std::size_t>(outputs), 1);
-    std::ranges::transform(torque_gains, gains.begin(), &TorqueGain::gain);
-    return gains;
+PhysicsColumnsOf physics_columns_of(const RobotPhysics& robot, OutputKind outputs,
+                                    std::vector<double> gains) {
+    PhysicsColumnsOf columns{chain_model(robot.robot, outputs), {}, std::move(gains)};
+    columns.effects = effect_models(robot.effects, columns.chain, robot.sign_velocity);
+    return columns;
 }
 
 void check_joints(const Robot& robot, const TrainingData& data) {
@@ -190,7 +182,10 @@ PreparedTraining prepare_training(std::span<const Recording> recordings, const M
     }
     prepared.position_noise_bound = estimate_position_noise_bound(prepared.data);
     const int lags = dense_lags({training.options.lags, training.options.every});
-    estimate_derivatives(prepared.data, recordings, lags, prepared.position_noise_bound);
+    // Input STD needs the derivatives that the firmware computes; torque constants need only accurate ones.
+    const bool as_input = input_description(training.options.input).uses_derivatives();
+    estimate_derivatives(prepared.data, recordings, lags, prepared.position_noise_bound,
+                         as_input ? 1 : derivative_spacing(lags));
     return prepared;
 }
 
@@ -201,7 +196,7 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     if (!options.model->has_physics()) {
         TrainingResult result = train(prepared.data, options, progress);
         set_derivatives(result.model, prepared);
-        return {std::move(result.model), std::move(result.hold_out), {}};
+        return {std::move(result.model), std::move(result.hold_out), {}, std::move(result.held_joints)};
     }
     if (!training.physics) {
         throw InputError(std::string("model ") + options.model->name +
@@ -209,10 +204,10 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     }
     const RobotPhysics& robot = *training.physics;
     check_joints(robot.robot, prepared.data);
-    std::vector<TorqueGain> gains = torque_gains(prepared, outputs, robot);
-    PhysicsColumnsOf columns{
-        chain_model(robot.robot, outputs), {}, output_gains(gains, prepared.data.outputs.cols())};
-    columns.effects = effect_models(robot.effects, columns.chain, robot.sign_velocity);
+    std::vector<TorqueGain> gains = gains_for(robot, outputs, prepared.data);
+    check_estimated_gains(gains);
+    const auto output_count = static_cast<std::size_t>(prepared.data.outputs.cols());
+    const PhysicsColumnsOf columns = physics_columns_of(robot, outputs, output_gains(gains, output_count));
     const auto regressor = robot_regressor(columns.chain, columns.effects, columns.output_gain);
     options.physics.regressor = regressor.get();
     options.physics.parameter_size = parameter_sizes(robot.robot, columns.chain, columns.effects);
@@ -230,7 +225,7 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     if (!structure_of(model).features) {
         model.input = {};
     }
-    return {std::move(model), std::move(result.hold_out), std::move(gains)};
+    return {std::move(model), std::move(result.hold_out), std::move(gains), std::move(result.held_joints)};
 }
 
 void restart_model(TrainedModel& model, const PreparedTraining& prepared) {
@@ -243,7 +238,7 @@ void restart_model(TrainedModel& model, const PreparedTraining& prepared) {
     const MatrixXd columns = columns_of(physics, prepared.data, rows);
     const ParameterPrior prior =
         ParameterPrior::independent(static_cast<Index>(physics.selected.size()), physics.prior_variance);
-    const CombinedPrior start =
+    const InitialState start =
         initial_state_of(structure_of(model), {model, prepared.data, rows, columns}, prior,
                          Eigen::Map<const VectorXd>(physics.start.weights.data(),
                                                     static_cast<Index>(physics.start.weights.size())));

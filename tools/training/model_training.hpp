@@ -2,10 +2,11 @@
 #pragma once
 
 #include "tools/base/recording/recording.hpp"
+#include "tools/robot/identification/torque_gains.hpp"
 #include "tools/robot/robot.hpp"
-#include "tools/training/physics/torque_constants.hpp"
 #include "tools/training/train.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -52,12 +53,14 @@ PreparedTraining prepare_training(std::span<const Recording> recordings, const M
 /// A model and further results of its training.
 struct ModelTrainingResult {
     TrainedModel model;
-    std::vector<HoldOutPoint> hold_out;   ///< CV: the errors over the grid
-    std::vector<TorqueGain> torque_gains; ///< of each joint, for physics of currents
+    std::vector<HoldOutPoint> hold_out;        ///< CV: the errors over the grid
+    std::vector<TorqueGain> torque_gains;      ///< of each joint, for physics of currents
+    std::vector<std::size_t> held_joints = {}; ///< see TrainingResult
 };
 
 /// Trains a model on `prepared`; see train(). The caller sets `training.rows`, `training.recordings` and the
-/// innovation limit. Throws InputError also for physics without a robot.
+/// innovation limit. Throws InputError also for physics without a robot, and for estimated torque constants
+/// that no motor has.
 ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind outputs,
                                 const ModelTraining& training, const ProgressCallback& progress);
 

@@ -6,14 +6,14 @@
 #include "tools/base/text/number.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/training/data/lag_spacing.hpp"
-#include "tools/training/physics/robot_prior.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 #include "tools/training/search/fit.hpp"
-#include "tools/training/search/training_problem.hpp"
+#include "tools/training/search/training_setup.hpp"
+#include "tools/training/start/batch_start.hpp"
 #include "tools/training/start/extrapolation.hpp"
 #include "tools/training/start/limits.hpp"
 #include "tools/training/start/normal_equations.hpp"
-#include "tools/training/start/random_features.hpp"
-#include "tools/training/start/start_state.hpp"
+#include "tools/training/start/robot_prior.hpp"
 #include "tools/training/training_options.hpp"
 
 #include <algorithm>
@@ -135,7 +135,7 @@ TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part
     const PhysicsProblem problem{model, setup.data, setup.rows.usable, columns};
     const std::optional<ParameterPrior> robot = knowledge_of(setup, choice, part.motion);
     const auto p = static_cast<Index>(choice.columns.size());
-    const CombinedPrior start =
+    const InitialState start =
         robot ? initial_state_of(structure, problem, *robot, std::nullopt)
               : initial_state_of(
                     structure, problem, ParameterPrior::independent(p, physics.prior_variance),
@@ -172,7 +172,7 @@ TrainingResult train_unspaced(const TrainingData& data, const TrainingOptions& o
         starting.searching = false;
         progress(starting);
     }
-    TrainingResult result{model_of(setup, fit), std::nullopt, fit.hold_out};
+    TrainingResult result{model_of(setup, fit), std::nullopt, fit.hold_out, setup.spread.held_joints()};
     if (fit.physics) {
         result.physics = start_physics(setup, *fit.physics, result.model);
     } else {

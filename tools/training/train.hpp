@@ -1,104 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/structure.hpp"
 #include "tools/training/data/training_data.hpp"
-#include "tools/training/physics/physics_start.hpp"
-#include "tools/training/physics/regressor.hpp"
 #include "tools/training/search/hold_out.hpp"
+#include "tools/training/start/initial_state.hpp"
+#include "tools/training/training_options.hpp"
+#include "tools/training/training_progress.hpp"
 
 #include <Eigen/Core>
 
-#include <cstdint>
-#include <functional>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 namespace dfdyn::tools {
-
-/// Estimation methods of the hyperparameters (paper, Section IV-C).
-enum class HyperMethod {
-    ML, ///< marginal likelihood
-    CV, ///< hold-out cross validation over a grid; NP, P and SP2 with inputs STD, DF and DFSR
-};
-
-/// Prior of pi for P and SPK.
-enum class PriorForm {
-    scaled,   ///< equal gamma^2 for columns that have equal size over the recording
-    unit,     ///< as in the paper: gamma^2 I for the physical parameters
-    diagonal, ///< D estimated, gamma = 1
-};
-
-/// The physics of P, SP, SP2 and SPK.
-struct PhysicsOptions {
-    const Regressor* regressor = nullptr; ///< of the recording's joints and outputs; must outlive training
-    /// Motion input of the regressor. False, as in the paper: derived from the input. STD: the recording's
-    /// derivatives; DFSR: its two filters in physical units (see difference_motion()); DFR: its rows 2 and 3,
-    /// of length 1, with additional factors; DF, DFW: a polynomial of degree 2 through the window. True:
-    /// filters like those of DFSR, with separate poles.
-    bool own_motion = false;
-    PriorForm prior = PriorForm::scaled;
-    double column_threshold = 1e-3; ///< of select_columns(), in (0, 1)
-    /// P: largest plausible magnitude of each parameter of the regressor, > 0, in the parameter's own unit;
-    /// empty: unknown. Used to choose columns (see select_columns()) and to bound the standard deviation of
-    /// the prior.
-    Eigen::VectorXd parameter_size;
-    /// P each: the robot's own parameters and their standard deviations (> 0). Empty: unknown. With
-    /// `TrainingOptions::shrinkage`, the initial state of P, SP, SP2 and SPK is the solution with this prior
-    /// (see robot_prior()) instead of gamma^2.
-    Eigen::VectorXd nominal, nominal_deviation;
-    std::optional<Eigen::VectorXd> given; ///< SP2: all physical parameters, instead of least squares
-};
-
-/// Options of the training, with their defaults.
-struct TrainingOptions {
-    const Structure* model = &structures::NP; ///< not null
-    HyperMethod hyper = HyperMethod::ML;
-    PhysicsOptions physics; ///< used unless the model is NP
-    InputKind input = InputKind::DFR;
-    int lags = 10; ///< M >= 1 (DFSR and filters of the physics: >= 2); STD: the longest window minus one
-    int every = 1; ///< spacing of the lags in samples, see LagSpacing; > 1: not STD, not CV
-    int rows_per_joint = 3; ///< k of DFR, 1 … M+1; fixed for the other inputs
-    /// STD: gains of velocity and acceleration in addition to the length scale, by ML. False, as in the
-    /// paper: one length scale for inputs with unit standard deviation.
-    bool relevance = true;
-    bool centred = true; ///< NP: outputs minus their mean; false, as in the paper: a prior with zero mean
-    /// True: physics starts near the robot's own parameters, if PhysicsOptions contains them. Away from the
-    /// data, predictions return to the mean (NP), the physics or zero (P), and standard deviations grow to
-    /// the range of the outputs. False, as in the paper: neither.
-    bool shrinkage = true;
-    int feature_count = 250; ///< d >= 1; P has none
-    bool orthogonal = true;  ///< orthogonal random features
-    /// largest number of samples in the exact kernel; >= 20; the time grows with its cube
-    int likelihood_rows = 1000;
-    int starts = 6;                  ///< local searches, >= 1
-    int evaluations_per_start = 200; ///< maximum, >= 1
-    /// maximum, with the likelihood of the estimator's model over all rows; 0: no refinement
-    int refinement_evaluations = 40;
-    int threads = 2;                 ///< >= 1; does not change the result
-    std::uint64_t seed = 1;          ///< of the starts and of omega
-    double forgetting_factor = 1;    ///< of the learner, in [1 - 1/(2d), 1]
-    double position_noise_bound = 0; ///< STD only, copied into the model
-    /// CV: share of the likelihood rows for training; the others are held out; in (0, 1)
-    double training_share = 0.7;
-};
-
-/// Progress of the training: reported after every evaluation of the likelihood or every point of the grid,
-/// and once when the batch solution begins.
-struct TrainingProgress {
-    bool searching = true; ///< false: the hyperparameters are determined, and the initial state is computed
-    int evaluations = 0;   ///< so far, over all starts and the refinement
-    int evaluations_most = 0; ///< if no search ends early
-    /// Present only in the call that reports the end of a start.
-    struct End {
-        int start = 0;
-        std::optional<double> log_likelihood; ///< empty: the start failed, no point had a finite likelihood
-    };
-    std::optional<End> end;
-};
-
-/// May be empty. Called from the worker threads, one call at a time.
-using ProgressCallback = std::function<void(const TrainingProgress&)>;
 
 /// The physical part of a trained model: y_k = offset_k + noise_std_k (phi' w_k + psi~_k' pi + e), psi~_k =
 /// psi_k column_scale / noise_std_k, pi ~ N(0, prior_variance I); the physical parameters are column_scale
@@ -124,6 +39,8 @@ struct TrainingResult {
     TrainedModel model;
     std::optional<TrainedPhysics> physics; ///< empty for NP
     std::vector<HoldOutPoint> hold_out;    ///< CV: the errors over the grid
+    /// Joints, from 0, whose motion is too small to learn from; see LagSpread::deviation().
+    std::vector<std::size_t> held_joints = {};
 };
 
 /// Trains a model. ML: maximizes the marginal likelihood of the exact kernel on strided rows in motion. Then

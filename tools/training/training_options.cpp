@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -79,12 +80,10 @@ void check_search(const TrainingOptions& options) {
     expect(options.refinement_evaluations >= 0, "at least 0 evaluations of the refinement",
            options.refinement_evaluations);
     expect(options.threads >= 1, "at least 1 thread", options.threads);
-    // without features, the number of the physics' parameters decides, which is not known yet
-    const bool features = options.model->features;
-    const double least = features ? least_forgetting_factor(options.feature_count) : 0.5;
+    const double least = least_forgetting_factor(options);
     expect(options.forgetting_factor >= least && options.forgetting_factor <= 1,
-           std::string("a forgetting factor from ") + (features ? "1 - 1/(2 features) = " : "") +
-               std::to_string(least) + " to 1",
+           std::string("a forgetting factor from ") +
+               (options.model->features ? "1 - 1/(2 features) = " : "") + std::to_string(least) + " to 1",
            options.forgetting_factor);
 }
 
@@ -144,9 +143,27 @@ void check_physics(const TrainingOptions& options, const TrainingData& data) {
 
 } // namespace
 
-PriorForm parse_prior_form(const std::string& name) { return named(prior_names, "prior", name); }
+PriorForm parse_prior_form(const std::string& name) { return named(prior_names, "--prior", name); }
 
-HyperMethod parse_hyper_method(const std::string& name) { return named(method_names, "hyper", name); }
+HyperMethod parse_hyper_method(const std::string& name) { return named(method_names, "--hyper", name); }
+
+bool needs_contiguous_lags(const TrainingOptions& options) {
+    return input_description(options.input).uses_derivatives() || options.hyper == HyperMethod::CV;
+}
+
+double forgetting_factor_of(double memory_s, double period_s) { return std::exp(-period_s / memory_s); }
+
+double memory_of(double forgetting_factor, double period_s) {
+    return -period_s / std::log(forgetting_factor);
+}
+
+double stored_forgetting_factor(double forgetting_factor) {
+    return static_cast<double>(static_cast<float>(forgetting_factor));
+}
+
+double least_forgetting_factor(const TrainingOptions& options) {
+    return options.model->features ? least_forgetting_factor(options.feature_count) : 0.5;
+}
 
 void check_options(const TrainingOptions& options, const TrainingData& data) {
     check_lags(options);

@@ -195,6 +195,15 @@ TEST_CASE("a case that fails does not stop the others and is tried again") {
     }
 }
 
+TEST_CASE("a result that cannot be written ends the run") {
+    const TemporaryDirectory directory;
+    write_small_experiment(directory);
+    std::filesystem::create_directories(directory.path() / "out/cases");
+    directory.write("out/cases/NP-ML-STD", ""); // in the place of the first case's folder
+    CHECK_THROWS_WITH(run(directory), ContainsSubstring("NP-ML-STD: cannot make the folder"));
+    CHECK_FALSE(std::filesystem::exists(directory.path() / "out/cases/NP-ML-DFR"));
+}
+
 TEST_CASE("all cases are scored at the same ticks") {
     const TemporaryDirectory directory;
     json plan = small_plan();

@@ -9,6 +9,7 @@
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/regressor.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -119,9 +120,10 @@ void measure(Recording& recording, double noise, std::mt19937_64& engine) {
     }
 }
 
-std::vector<RigidBodyFit> fit_planar(const Recording& recording) {
+/// `gain`: output per N·m of both joints.
+std::vector<RigidBodyFit> fit_planar(const Recording& recording, double gain = 1) {
     const Robot robot = dfdyn::tests::planar_arm(gravity);
-    return fit_rigid_body(robot, chain_model(robot, OutputKind::joint_torque), {1, 1}, sign_velocity,
+    return fit_rigid_body(robot, chain_model(robot, OutputKind::joint_torque), {gain, gain}, sign_velocity,
                           {&recording, 1});
 }
 
@@ -289,6 +291,18 @@ TEST_CASE("columns of rounding errors give no parameter that another motion woul
             REQUIRE(std::abs(forecast) < 1000); // N·m; the arm's own torques are at most 60
         }
     }
+}
+
+TEST_CASE("a gain with which no plausible arm explains the outputs identifies no parameter") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Recording training = recording_of(TwoJointMotion(engine), 700);
+    measure(training, 0.5, engine);
+    const std::vector<RigidBodyFit> fits = fit_planar(training, 1e-9);
+    REQUIRE(fits.size() == 2);
+    CHECK(fits[0].output_gain[0] == Approx(fit_planar(training)[0].output_gain[0])); // does not use the gain
+    REQUIRE(fits[1].identified);
+    CHECK(std::ranges::all_of(fits[1].inertia, [](double value) { return value == 0; }));
+    CHECK(std::ranges::all_of(fits[1].friction, [](double value) { return value == 0; }));
 }
 
 TEST_CASE("a recording of exactly 20,000 rows is fitted with all of them") {

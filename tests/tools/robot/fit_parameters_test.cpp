@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/identification/fit_parameters.hpp"
 #include "tools/robot/identification/log_cholesky.hpp"
@@ -170,4 +171,22 @@ TEST_CASE("consistent parameters without informative data are the nominal ones")
     const tools::FitData data{MatrixXd::Zero(60, nominal.size()), MatrixXd::Zero(10, 6), nominal};
     const tools::FitNoise noise{VectorXd::Ones(6), VectorXd::Ones(6)};
     CHECK((tools::fit_consistent_parameters(data, noise) - nominal).norm() < 1e-9 * nominal.norm());
+}
+
+TEST_CASE("a fit of many samples has the values and deviations of a decomposition of all rows") {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr Eigen::Index rows = 1300;
+    const Experiment made =
+        experiment(dfdyn::tests::planar_arm(9.81), OutputKind::joint_torque, rows, 0.1, engine);
+    const tools::BaseFit fit = tools::fit_base_parameters(made.data, made.base);
+    const VectorXd weight = fit.noise.deviation.cwiseInverse().replicate(rows, 1);
+    const MatrixXd columns = weight.asDiagonal() * made.data.regressor(Eigen::all, made.base.independent);
+    const MatrixXd inverse = tools::pseudo_inverse(columns);
+    const VectorXd error =
+        tools::stacked(made.data.outputs) - VectorXd(made.data.regressor * made.data.nominal);
+    const VectorXd change = inverse * weight.cwiseProduct(error);
+    CHECK((fit.value - fit.nominal - change).norm() < 1e-9 * change.norm());
+    const VectorXd correlation = fit.noise.correlation_length.replicate(rows, 1);
+    const VectorXd deviation = (inverse.cwiseAbs2() * correlation).cwiseSqrt();
+    CHECK((fit.deviation - deviation).norm() < 1e-9 * deviation.norm());
 }

@@ -98,6 +98,73 @@ TEST_CASE("an output without a prediction has the held-out error 1, one that nev
     CHECK(std::isinf(held_out_error(model, {&judged, 1})));
 }
 
+TEST_CASE("outputs that do not change at the end of the recording are rejected before training") {
+    const int still = GENERATE(450, 400); // the last 450 rows judge, and the first ones have no prediction
+    Recording recording = swinging(1500, 0.01);
+    std::fill(recording.output.values.end() - still, recording.output.values.end(), 2.5);
+    ModelTraining training;
+    training.options.likelihood_rows = 80;
+    training.options.evaluations_per_start = 30;
+    training.options.feature_count = 16;
+    if (still < 450) { // the others are before gaps
+        for (std::size_t row = 1050; row < 1100; row += 5) {
+            recording.gap_before[row] = 1;
+        }
+    }
+    int candidates = 0;
+    const auto choose_with = [&](const FreeSizes& free) {
+        return choose_sizes({&recording, 1}, OutputKind::joint_torque, training, free, {},
+                            [&] { ++candidates; });
+    };
+    CHECK_THROWS_WITH(
+        choose_with({}),
+        "made up: expected an output that changes in the last 30 % of the rows, by which models "
+        "are compared, found none: record longer, with more varied motion");
+    CHECK(candidates == (still < 450 ? 1 : 0));
+    CHECK(choose_with({false, false, false, false}).chosen.options.feature_count == 16); // nothing to compare
+}
+
+TEST_CASE("a memory that is too short for more than 1000 features is not a candidate", "[.long]") {
+    // At this period the shortest memory of the search is enough for 1000 features, but not for 1001.
+    const Recording recording = swinging(80, 0.0025);
+    ModelTraining training;
+    training.options.likelihood_rows = 30;
+    training.options.evaluations_per_start = 3;
+    training.options.shrinkage = false;
+    training.options.feature_count = 1001;
+    const SizeChoice choice =
+        choose_sizes({&recording, 1}, OutputKind::joint_torque, training, {false, false, false, true}, {});
+    CHECK(choice.chosen.options.feature_count == 1001);
+    CHECK(choice.tried == 3); // no memory, 30 s and 180 s
+}
+
+TEST_CASE("the rejection of constant outputs names the rows that the caller compares by") {
+    Recording constant = swinging(10, 0.01);
+    CHECK_NOTHROW(require_varying_outputs({&constant, 1}, "the rows from 49 % to 70 %"));
+    std::ranges::fill(constant.output.values, 2.5);
+    CHECK_THROWS_WITH(
+        require_varying_outputs({&constant, 1}, "the rows from 49 % to 70 %"),
+        Catch::Matchers::StartsWith(
+            "made up: expected an output that changes in the rows from 49 % to 70 %, by which "));
+}
+
+TEST_CASE("a short memory limits the number of features that the choice considers") {
+    const Recording recording = swinging(1500, 0.01);
+    ModelTraining training;
+    training.options.likelihood_rows = 80;
+    training.options.evaluations_per_start = 30;
+    const int most_features = GENERATE(10, 16, 40);
+    CAPTURE(most_features);
+    training.options.forgetting_factor = 1 - 1 / (2.2 * most_features);
+    TargetBudget budget;
+    budget.flash_bytes = 512 * 1024;
+    const SizeChoice choice = choose_sizes({&recording, 1}, OutputKind::joint_torque, training,
+                                           {false, false, true, false}, budget);
+    REQUIRE_FALSE(choice.sizes.empty());
+    CHECK(choice.sizes.back().features <= most_features);
+    CHECK(choice.chosen.options.feature_count <= most_features);
+}
+
 TEST_CASE("equal data give equal choices") {
     TargetBudget budget;
     budget.ram_bytes = 16 * 1024;

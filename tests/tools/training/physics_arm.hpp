@@ -8,8 +8,8 @@
 #include "tools/model/structure.hpp"
 #include "tools/training/data/input_map.hpp"
 #include "tools/training/data/lag_window.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 #include "tools/training/physics/physics_columns.hpp"
-#include "tools/training/start/random_features.hpp"
 #include "tools/training/train.hpp"
 
 #include <string>

@@ -2,7 +2,7 @@
 // Cross validation, threads and options of training with physics.
 #include "tests/support/catch.hpp"
 #include "tests/tools/training/physics_arm.hpp"
-#include "tools/training/search/training_problem.hpp"
+#include "tools/training/search/training_setup.hpp"
 
 #include <Eigen/LU>
 

@@ -8,7 +8,7 @@
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/training/data/input_map.hpp"
-#include "tools/training/start/random_features.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 
 #include <algorithm>
 #include <cmath>

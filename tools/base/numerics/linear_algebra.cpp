@@ -32,10 +32,16 @@ PivotedFactor pivoted_factor(const MatrixXd& columns) {
 }
 
 MatrixXd least_squares(const MatrixXd& columns, const MatrixXd& right) {
+    if (columns.cols() == 0) { // Eigen's column pivoting reads the first column
+        return MatrixXd(0, right.cols());
+    }
     return columns.colPivHouseholderQr().solve(right);
 }
 
 VectorXd least_squares(const MatrixXd& columns, const VectorXd& right) {
+    if (columns.cols() == 0) { // as above
+        return VectorXd(0);
+    }
     return columns.colPivHouseholderQr().solve(right);
 }
 

@@ -5,6 +5,13 @@
 
 namespace dfdyn::tools {
 
+/// Concatenates two vectors; either may be empty.
+inline Eigen::VectorXd concatenated(const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
+    Eigen::VectorXd result(first.size() + second.size());
+    result << first, second;
+    return result;
+}
+
 // Eigen's decompositions of dense matrices. Each takes seconds to compile, so they are compiled once, here.
 // Matrices of any size are accepted; none is checked for NaN.
 

@@ -2,7 +2,7 @@
 #include "tools/base/recording/read_bag.hpp"
 
 #include "tools/base/bag/bag.hpp"
-#include "tools/base/bag/ros_message.hpp"
+#include "tools/base/recording/bag_content.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/nearest_name.hpp"
 #include "tools/base/text/number.hpp"
@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <set>
+#include <limits>
 #include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -21,151 +21,58 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// A message with its time.
+/// A longer step between two wrenches, in usual steps of the slower topic, is a gap.
+constexpr double longest_wrench_step = 3;
+
+/// Share of a sensor's steps up to the usual one. A sensor that sends in bursts of up to fifty wrenches has
+/// short steps within them, and one long step from each burst to the next.
+constexpr double usual_wrench_share = 0.98;
+
+/// Returns the time (ns) between messages with different stamps that this share of the times does not exceed;
+/// NaN if all stamps are equal.
 template <class Message>
-struct Stamped {
-    std::int64_t time_ns = 0;
-    Message message;
-};
-
-/// Messages of a bag from which a recording is made.
-struct BagContent {
-    std::vector<Stamped<JointStateMessage>> joints;
-    std::vector<Stamped<WrenchMessage>> wrenches;
-    std::optional<OutputKind> outputs; ///< to read
-};
-
-/// Reads the messages of the requested topics, or of the only topic of each type.
-class ContentReader {
-  public:
-    ContentReader(const std::filesystem::path& path, const ReadOptions& options)
-        : path_(path), name_(shown(path)), options_(options) {}
-
-    BagContent read() {
-        visit_bag(path_, [this](const BagMessage& message) { take(message); });
-        const Names unknown = unknown_topics();
-        if (!unknown.empty()) {
-            throw InputError(name_ + ": --topic: expected topics of the bag, found " +
-                             in_quotes(unknown.front()) + suggestion(unknown.front(), all_topics()) +
-                             "; the bag has " + listed(described_topics()));
-        }
-        require_one(joint_state_type);
-        content_.outputs = outputs();
-        if (content_.outputs == OutputKind::wrench) {
-            require_one(wrench_type);
-        }
-        return std::move(content_);
-    }
-
-  private:
-    /// Returns the outputs to read: without efforts a wrench, if that is one of the choices.
-    std::optional<OutputKind> outputs() const {
-        const std::vector<OutputKind>& choices = options_.output_choices;
-        if (options_.outputs || choices.empty()) {
-            return options_.outputs;
-        }
-        const bool wrench = std::ranges::find(choices, OutputKind::wrench) != choices.end() &&
-                            !content_.wrenches.empty() && content_.joints.front().message.effort.empty();
-        return wrench ? OutputKind::wrench : choices.front();
-    }
-
-    void take(const BagMessage& message) {
-        types_[message.topic.name] = message.topic.type;
-        if (!options_.topics.empty() &&
-            std::ranges::find(options_.topics, message.topic.name) == options_.topics.end()) {
-            return;
-        }
-        const std::string what = name_ + ": message of " + message.topic.name;
-        const auto time = [&](std::int64_t stamp_ns) {
-            return stamp_ns != 0 ? stamp_ns : message.log_time_ns;
-        };
-        if (message.topic.type == joint_state_type) {
-            JointStateMessage joints = decode_joint_state(message.bytes, what);
-            chosen_[joint_state_type].insert(message.topic.name);
-            const std::int64_t time_ns = time(joints.stamp_ns);
-            content_.joints.push_back({time_ns, std::move(joints)});
-        } else if (message.topic.type == wrench_type) {
-            const WrenchMessage wrench = decode_wrench(message.bytes, what);
-            chosen_[wrench_type].insert(message.topic.name);
-            content_.wrenches.push_back({time(wrench.stamp_ns), wrench});
+double message_step_ns(const std::vector<Stamped<Message>>& messages, double share) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < messages.size(); ++k) {
+        if (messages[k].time_ns > messages[k - 1].time_ns) {
+            steps.push_back(static_cast<double>(messages[k].time_ns - messages[k - 1].time_ns));
         }
     }
-
-    Names all_topics() const {
-        Names names;
-        for (const auto& [topic, type] : types_) {
-            names.push_back(topic);
-        }
-        return names;
+    if (steps.empty()) {
+        return std::numeric_limits<double>::quiet_NaN();
     }
-
-    Names described_topics() const {
-        Names names;
-        for (const auto& [topic, type] : types_) {
-            names.push_back(topic + " " + type.substr(type.rfind('/') + 1));
-        }
-        return names;
-    }
-
-    Names unknown_topics() const {
-        Names unknown;
-        std::ranges::copy_if(options_.topics, std::back_inserter(unknown),
-                             [this](const std::string& topic) { return !types_.contains(topic); });
-        return unknown;
-    }
-
-    void require_one(const char* type) {
-        const std::set<std::string>& topics = chosen_[type];
-        if (topics.size() != 1) {
-            const Names found(topics.begin(), topics.end());
-            throw InputError(
-                name_ + ": expected one topic of type " + type +
-                (topics.size() > 1 ? " (--topic chooses it)" : "") + ", found " +
-                (found.empty() ? "none; the bag has " + listed(described_topics()) : listed(found)));
-        }
-    }
-
-    const std::filesystem::path& path_;
-    std::string name_;
-    const ReadOptions& options_;
-    BagContent content_;
-    std::map<std::string, std::string> types_;            ///< of all topics
-    std::map<std::string, std::set<std::string>> chosen_; ///< topics of each type
-};
+    std::ranges::sort(steps);
+    return steps[static_cast<std::size_t>(share * static_cast<double>(steps.size() - 1))];
+}
 
 /// Makes the rows of a recording from messages.
 class BagRecording {
   public:
     BagRecording(const std::filesystem::path& path, const ReadOptions& options)
-        : path_(path), name_(shown(path)), options_(options), content_(ContentReader(path, options).read()) {
+        : path_(path), name_(shown(path)), options_(options), content_(read_bag_content(path, options)) {
         recording_.source = path.string();
     }
 
     Recording make() {
-        std::ranges::stable_sort(content_.joints, {}, &Stamped<JointStateMessage>::time_ns);
-        std::ranges::stable_sort(content_.wrenches, {}, &Stamped<WrenchMessage>::time_ns);
         choose_joints();
+        const std::size_t other_joints = drop_other_joints();
         name_columns();
-        std::size_t other_joints = 0;
-        std::size_t without_wrench = 0;
+        if (content_.outputs == OutputKind::wrench) {
+            longest_wrench_step_ns_ =
+                longest_wrench_step * std::max(message_step_ns(content_.wrenches, usual_wrench_share),
+                                               message_step_ns(content_.joints, 0.5));
+        }
         for (const auto& joints : content_.joints) {
-            if (!find_places(joints.message)) {
-                ++other_joints;
-            } else if (!has_output(joints.time_ns)) {
-                ++without_wrench;
-            } else if (wanted(row_++)) {
+            find_places(joints.message);
+            if (has_output(joints.time_ns) && wanted(row_++)) {
                 take(joints);
             }
         }
-        if (without_wrench > 0) {
-            recording_.notes.push_back(
-                std::to_string(without_wrench) +
-                " joint states before the first or after the last wrench are not used");
-        }
-        if (other_joints > 0) {
-            recording_.notes.push_back(std::to_string(other_joints) + " messages without all of " +
-                                       listed(names_) + " are not used");
-        }
+        note("joint states before the first or after the last wrench", outside_wrenches_);
+        note("joint states between wrenches more than " + rounded_text(longest_wrench_step_ns_ / 1e6) +
+                 " ms apart",
+             in_wrench_gaps_);
+        note("messages without all of " + listed(names_), other_joints);
         require_rows();
         return std::move(recording_);
     }
@@ -200,6 +107,22 @@ class BagRecording {
         }
     }
 
+    /// Removes the messages of other publishers, such as a gripper's. Returns their number.
+    std::size_t drop_other_joints() {
+        const std::size_t dropped = std::erase_if(
+            content_.joints, [this](const auto& joints) { return !has_joints(joints.message, names_); });
+        if (content_.joints.empty()) {
+            throw InputError(name_ + ": expected messages with all of " + listed(names_) + ", found none");
+        }
+        return dropped;
+    }
+
+    void note(const std::string& what, std::size_t count) {
+        if (count > 0) {
+            recording_.notes.push_back(std::to_string(count) + " " + what + " are not used");
+        }
+    }
+
     void name_columns() {
         const std::size_t count = names_.size();
         const JointStateMessage& first = content_.joints.front().message;
@@ -212,17 +135,13 @@ class BagRecording {
         }
     }
 
-    /// Sets the places of the joints in the message. Returns false if it lacks one of them.
-    bool find_places(const JointStateMessage& message) {
+    /// Sets the places of the joints in the message, which has all of them.
+    void find_places(const JointStateMessage& message) {
         places_.clear();
         for (const std::string& name : names_) {
             const auto found = std::ranges::find(message.names, name);
-            if (found == message.names.end()) {
-                return false;
-            }
             places_.push_back(static_cast<std::size_t>(found - message.names.begin()));
         }
-        return true;
     }
 
     bool wanted(std::size_t row) const { return options_.rows.has(row); }
@@ -244,21 +163,46 @@ class BagRecording {
         return "";
     }
 
-    bool has_output(std::int64_t time_ns) const {
-        return content_.outputs != OutputKind::wrench ||
-               (time_ns >= content_.wrenches.front().time_ns && time_ns <= content_.wrenches.back().time_ns);
+    /// Returns false, and counts it, for a time without a wrench to interpolate.
+    bool has_output(std::int64_t time_ns) {
+        if (content_.outputs != OutputKind::wrench) {
+            return true;
+        }
+        if (time_ns < content_.wrenches.front().time_ns || time_ns > content_.wrenches.back().time_ns) {
+            ++outside_wrenches_;
+            return false;
+        }
+        if (wrenches_around(time_ns).span_ns() > longest_wrench_step_ns_) {
+            ++in_wrench_gaps_;
+            gap_ = true;
+            return false;
+        }
+        return true;
+    }
+
+    /// Two wrenches, or one twice.
+    struct WrenchPair {
+        const Stamped<WrenchMessage>& before;
+        const Stamped<WrenchMessage>& after;
+
+        double span_ns() const { return static_cast<double>(after.time_ns - before.time_ns); }
+    };
+
+    /// Returns the wrench at `time_ns`, or the last one before and the first one after it. Both exist.
+    WrenchPair wrenches_around(std::int64_t time_ns) const {
+        const auto after =
+            std::ranges::lower_bound(content_.wrenches, time_ns, {}, &Stamped<WrenchMessage>::time_ns);
+        return {*(after->time_ns == time_ns ? after : after - 1), *after};
     }
 
     /// Appends the wrench at this time, interpolated between two messages. Returns a fault, or "".
     std::string append_wrench(std::int64_t time_ns) {
-        const auto after =
-            std::ranges::lower_bound(content_.wrenches, time_ns, {}, &Stamped<WrenchMessage>::time_ns);
-        const auto before = after->time_ns == time_ns ? after : after - 1;
-        const double span = static_cast<double>(after->time_ns - before->time_ns);
-        const double share = span > 0 ? static_cast<double>(time_ns - before->time_ns) / span : 0;
+        const WrenchPair wrenches = wrenches_around(time_ns);
+        const double span = wrenches.span_ns();
+        const double share = span > 0 ? static_cast<double>(time_ns - wrenches.before.time_ns) / span : 0;
         for (std::size_t k = 0; k < 6; ++k) {
-            const double from = before->message.wrench[k];
-            const double value = from + share * (after->message.wrench[k] - from);
+            const double from = wrenches.before.message.wrench[k];
+            const double value = from + share * (wrenches.after.message.wrench[k] - from);
             if (!std::isfinite(value)) {
                 return "wrench: expected finite numbers, found " + number_text(value);
             }
@@ -334,6 +278,9 @@ class BagRecording {
     Recording recording_;
     Names names_;                     ///< of the joints, in the order of the chain
     std::vector<std::size_t> places_; ///< of the joints in the current message
+    double longest_wrench_step_ns_ = 0;
+    std::size_t outside_wrenches_ = 0; ///< joint states before the first or after the last wrench
+    std::size_t in_wrench_gaps_ = 0;   ///< joint states
     std::size_t row_ = 0;
     bool gap_ = true;
 };

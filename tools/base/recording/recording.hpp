@@ -15,6 +15,9 @@
 
 namespace dfdyn::tools {
 
+/// Joints of a recording, and so of a model: far more than an arm has.
+inline constexpr std::size_t largest_recorded_joint_count = 64;
+
 /// Predicted quantity: the columns of a recording that are the outputs.
 enum class OutputKind {
     joint_torque,  ///< `tau`: tau1..tauN, N·m
@@ -117,6 +120,7 @@ struct ReadOptions {
     ColumnPatterns columns = {};               ///< of quantities with other names than t, q1, …
     Units units = {};                          ///< of quantities in other units than s, rad, N·m, A
     std::vector<std::string> joint_names = {}; ///< of the chain; empty: unknown
+    std::vector<bool> prismatic = {};          ///< per joint of the chain; empty: unknown
     /// Topics of a ROS 2 bag: joint states, and a wrench if it is the output; empty: the only ones in the
     /// bag.
     std::vector<std::string> topics = {};
@@ -128,8 +132,8 @@ struct ReadOptions {
 /// row has only numbers); a decimal comma where no comma separates fields; LF or CRLF, a byte order mark, no
 /// newline at the end, empty lines at the end, a leading plus, and further columns with any content. Times
 /// are seconds, or ms, µs or ns since 1970 (see likely_time_unit). Independent of the locale. Throws
-/// InputError with file, line and column for other content. Cost: one pass, O(file); memory for the values
-/// kept, and 1 MiB.
+/// InputError with file, line and column for other content, and for more than 64 joints. Cost: one pass,
+/// O(file); memory for the values kept, and 1 MiB.
 Recording read_recording(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads several recordings in order; `options.rows` applies to each. Throws InputError as above, and if

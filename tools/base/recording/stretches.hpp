@@ -14,6 +14,9 @@ struct Stretch {
     Eigen::Index first = 0, count = 0;
 };
 
+/// Returns the time (s) from the row before `row` to `row`, which is at least 1.
+double time_step_s(const Recording& recording, std::size_t row);
+
 /// Returns the median of the time steps between rows; NaN for less than two rows.
 double median_step_s(const Recording& recording);
 

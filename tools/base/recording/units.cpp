@@ -19,8 +19,8 @@ constexpr double turn = 2 * std::numbers::pi;
 
 /// Factors of the units, by quantity. Positions also have the unit `ticks:N`.
 const std::map<std::string, std::map<std::string, double>>& known_units() {
-    static const std::map<std::string, double> position{
-        {"rad", 1}, {"deg", turn / 360}, {"turn", turn}, {"m", 1}, {"mm", 1e-3}};
+    static const std::map<std::string, double> position{{"rad", 1},     {"mrad", 1e-3}, {"deg", turn / 360},
+                                                        {"turn", turn}, {"m", 1},       {"mm", 1e-3}};
     static const std::map<std::string, std::map<std::string, double>> table{
         {"t", {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}}},
         {"q", position},
@@ -85,7 +85,7 @@ Units parse_units(std::string_view text) {
                 in_quotes(entry));
         }
         for (const std::string& unit : split(std::string_view(entry).substr(equals + 1), '|')) {
-            units[quantity].push_back(factor_of(quantity, unit));
+            units[quantity].push_back({unit, factor_of(quantity, unit)});
         }
     }
     for (const char* const derivative : {"qd", "qdd"}) {
@@ -101,12 +101,40 @@ double unit_factor(const Units& units, const std::string& quantity, std::size_t 
     if (found == units.end()) {
         return 1;
     }
-    const std::vector<double>& factors = found->second;
-    if (factors.size() != 1 && factors.size() != count) {
+    const std::vector<ColumnUnit>& columns = found->second;
+    if (columns.size() != 1 && columns.size() != count) {
         throw InputError("--units " + quantity + ": expected one unit or " + std::to_string(count) +
-                         ", one per column, found " + std::to_string(factors.size()));
+                         ", one per column, found " + std::to_string(columns.size()));
     }
-    return factors.size() == 1 ? factors.front() : factors[index];
+    return columns[columns.size() == 1 ? 0 : index].factor;
+}
+
+void check_units(const Units& units, const std::vector<bool>& prismatic) {
+    const auto sliding = static_cast<std::size_t>(std::ranges::count(prismatic, true));
+    const bool mixed = sliding > 0 && sliding < prismatic.size();
+    for (const auto& [quantity, columns] : units) {
+        if (!known_units().at(quantity).contains("rad")) {
+            continue;
+        }
+        if (mixed && columns.size() == 1 && columns.front().factor != 1) {
+            throw InputError("--units " + quantity +
+                             ": expected one unit per joint, separated by |, because some joints are "
+                             "prismatic and others turn, found one unit");
+        }
+        for (std::size_t joint = 0; joint < prismatic.size(); ++joint) {
+            const ColumnUnit& unit = columns[std::min(joint, columns.size() - 1)];
+            const bool millimetres = unit.name == "mm";
+            if (prismatic[joint] && unit.factor != 1 && !millimetres) {
+                throw InputError("--units " + quantity + ": expected m or mm for the prismatic joint " +
+                                 std::to_string(joint + 1) + ", found a unit of angles");
+            }
+            if (!prismatic[joint] && millimetres) {
+                throw InputError("--units " + quantity + ": expected a unit of angles for joint " +
+                                 std::to_string(joint + 1) +
+                                 ", which turns, found mm (mrad are thousandths of a radian)");
+            }
+        }
+    }
 }
 
 double likely_time_unit(double first_time) {

@@ -39,6 +39,19 @@ std::string in_quotes(std::string_view text) { return '"' + shortened(text) + '"
 
 std::string shown(const std::filesystem::path& path) { return escaped(path.native(), Letters::any); }
 
+std::string shell_word(std::string_view text) {
+    constexpr std::string_view plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:@%=";
+    if (!text.empty() && text.find_first_not_of(plain) == std::string_view::npos) {
+        return std::string(text);
+    }
+    std::string quoted = "'";
+    for (const char character : text) {
+        quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
+    }
+    return quoted + "'";
+}
+
 std::string listed(std::span<const std::string> names) {
     std::string out;
     for (const std::string& name : names.first(std::min(names.size(), longest_list))) {

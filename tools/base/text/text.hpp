@@ -17,6 +17,10 @@ std::string in_quotes(std::string_view text);
 /// Returns `path` for a message, with control characters as \xNN, so that the message stays on one line.
 std::string shown(const std::filesystem::path& path);
 
+/// Returns `text` as one word of a POSIX shell: in single quotes unless it has only letters, digits and
+/// `_-./+,:@%=`.
+std::string shell_word(std::string_view text);
+
 /// Returns `names` for a message: separated by `, `, each as in in_quotes but without quotes; `... (N in
 /// all)` after the first 30.
 std::string listed(std::span<const std::string> names);

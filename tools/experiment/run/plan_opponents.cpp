@@ -6,8 +6,8 @@
 #include "tools/experiment/run/train_case.hpp"
 #include "tools/model/chain_model.hpp"
 #include "tools/replay/opponents/rigid_body.hpp"
+#include "tools/robot/identification/torque_gains.hpp"
 #include "tools/robot/motion.hpp"
-#include "tools/training/physics/torque_constants.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,22 +55,11 @@ void check_fit(const Plan& plan, const Robot& robot, const Recording& recording)
 }
 
 /// Returns the outputs per N·m: from the plan's torque constants, or estimated as in training.
-std::vector<double> output_gains(const Plan& plan, const Robot& robot, std::span<const Recording> training) {
-    std::vector<double> gains(training.front().output.names.size(), 1);
-    if (plan.outputs == OutputKind::motor_current && !plan.robot.torque_constants.empty()) {
-        std::ranges::transform(plan.robot.torque_constants, gains.begin(),
-                               [](double constant) { return 1 / constant; });
-    } else if (plan.outputs == OutputKind::motor_current) {
-        const RecordedMotion recorded = recorded_motion(training, rigid_body_window(training));
-        TrainingData data;
-        data.positions = recorded.motion.position;
-        data.velocities = recorded.motion.velocity;
-        data.accelerations = recorded.motion.acceleration;
-        data.outputs = recorded.outputs;
-        std::ranges::transform(estimate_torque_gains(robot, data, plan.robot.sign_velocity), gains.begin(),
-                               &TorqueGain::gain);
-    }
-    return gains;
+std::vector<double> gains_of_plan(const Plan& plan, const Robot& robot, std::span<const Recording> training) {
+    const auto recorded = [&] { return recorded_motion(training, rigid_body_window(training)); };
+    return output_gains(
+        torque_gains(robot, plan.outputs, plan.robot.torque_constants, recorded, plan.robot.sign_velocity),
+        training.front().output.names.size());
 }
 
 struct FittedBodies {
@@ -87,7 +76,7 @@ FittedBodies fit_bodies(const Plan& plan, const PlanData& data) {
     check_fit(plan, robot, data.start);
     const Recording training[] = {data.start, data.online};
     FittedBodies bodies{chain_model(robot, plan.outputs), {}};
-    bodies.fits = fit_rigid_body(robot, bodies.chain, output_gains(plan, robot, training),
+    bodies.fits = fit_rigid_body(robot, bodies.chain, gains_of_plan(plan, robot, training),
                                  plan.robot.sign_velocity, training);
     if (bodies.fits.empty()) {
         throw InputError("the training log has no stretch without a gap that is long enough for derivatives");

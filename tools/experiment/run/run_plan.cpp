@@ -108,17 +108,23 @@ class PlanRun {
             job.result = read_job(job.path, inputs);
             job.reused = job.result.has_value();
         }
-        try {
-            if (!job.result) {
-                job.result = write_job(job.path, inputs,
-                                       run_job(plan_, data_, job.one, job.seed, memories_, threads_,
-                                               [&job](double share) { job.done = share; }));
+        if (!job.reused) {
+            compute(job);
+            if (job.result) { // what cannot be written ends the run: the other jobs would be lost as well
+                job.result = write_job(job.path, inputs, *job.result);
             }
-        } catch (const InputError& error) {
-            job.result.reset();
-            job.failure = error.what();
         }
         job.done = 1;
+    }
+
+    /// Sets the result of the job, or its failure.
+    void compute(Job& job) {
+        try {
+            job.result = run_job(plan_, data_, job.one, job.seed, memories_, threads_,
+                                 [&job](double share) { job.done = share; });
+        } catch (const InputError& error) {
+            job.failure = error.what();
+        }
     }
 
     double share_done() const {

@@ -37,7 +37,8 @@ struct RunOptions {
 /// the recordings' checksums and the program are the same. Files are replaced atomically, so that an aborted
 /// run can continue. `progress` receives the number of completed jobs (including reused and failed ones, and
 /// the share of those in progress), in the calling thread. After an InputError in one job the others
-/// continue; any other exception ends the run.
+/// continue. Throws InputError at the first result that cannot be written; any other exception ends the run
+/// as well.
 EvaluationResults run_plan(const Plan& plan, const PlanData& data, const RunOptions& options,
                            const std::function<void(double)>& progress);
 

@@ -4,8 +4,8 @@
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/structure.hpp"
 #include "tools/robot/urdf/read_robot.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 #include "tools/training/model_training.hpp"
-#include "tools/training/start/random_features.hpp"
 #include "tools/training/training_options.hpp"
 
 #include <limits>

@@ -3,6 +3,7 @@
 
 #include "dfdyn/core/snapshot.hpp"
 #include "dfdyn/monitor/contact_detector.hpp"
+#include "tools/base/recording/recording.hpp"
 #include "tools/base/system/read_file.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/json_reader.hpp"
@@ -28,7 +29,7 @@ using nlohmann::ordered_json;
 constexpr const char* schema = "dfdyn.model/1";
 
 /// Upper limits of sizes, above those of any arm: a malicious file must not cause excessive allocations.
-constexpr int largest_joint_count = 64;
+constexpr int largest_joint_count = static_cast<int>(largest_recorded_joint_count);
 constexpr int largest_feature_count = 5000;
 constexpr int largest_output_count = 64;
 constexpr double largest_parameter_variance_factor = 1e9;

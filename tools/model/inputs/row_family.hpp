@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/base/numerics/bounds.hpp"
 #include "tools/base/numerics/random_source.hpp"
 #include "tools/model/model.hpp"
 
@@ -21,12 +22,6 @@ struct InputRows {
 struct InputRowsGradient {
     Eigen::MatrixXd rows;
     Eigen::VectorXd gain;
-};
-
-/// Bounds of the parameters for the optimiser.
-struct Bounds {
-    Eigen::VectorXd lower;
-    Eigen::VectorXd upper;
 };
 
 /// Returns the bounds of `count` relevance gains that are learned as logarithms: from negligible (1e-3) to

@@ -6,10 +6,11 @@
 #include "tools/base/recording/sample_grid.hpp"
 #include "tools/model/chain_model.hpp"
 #include "tools/model/effects.hpp"
+#include "tools/robot/dynamics/friction_direction.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/motion.hpp"
 #include "tools/training/physics/column_selection.hpp"
-#include "tools/training/physics/machine_size.hpp"
+#include "tools/training/physics/parameter_sizes.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
 
 #include <Eigen/Core>
@@ -51,9 +52,9 @@ class MotionColumns {
         values.leftCols(inertial()) = psi_;
         values.rightCols<1>().setOnes();
         if (!wrench_) {
-            const auto velocity = motion.velocity.row(row).transpose();
+            const VectorXd velocity = motion.velocity.row(row).transpose();
             values.col(inertial()) = velocity;
-            values.col(inertial() + 1) = (velocity / sign_velocity_).array().tanh();
+            values.col(inertial() + 1) = friction_direction(velocity, sign_velocity_);
         }
     }
 

@@ -6,8 +6,10 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -37,9 +39,27 @@ FitNoise noise_of(const Eigen::MatrixXd& left) {
     return noise;
 }
 
-/// Returns the weight of every stacked row.
-Eigen::VectorXd row_weights(const Eigen::VectorXd& per_output, Eigen::Index rows) {
-    return per_output.replicate(rows, 1);
+/// Returns R (b + 1 x b + 1, upper triangular) of the QR decomposition of the rows [columns, error], each row
+/// multiplied by the weight of its output. `independent`: the b columns of the regressor. The rows are added
+/// in blocks, whose weighted copies fit into a cache.
+Eigen::MatrixXd weighted_factor(const FitData& data, const std::vector<Eigen::Index>& independent,
+                                const Eigen::MatrixXd& error, const Eigen::VectorXd& weight) {
+    constexpr Eigen::Index block_samples = 500;
+    const Eigen::Index outputs = error.cols();
+    const auto count = std::ssize(independent);
+    Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(count + 1, count + 1);
+    for (Eigen::Index first = 0; first < error.rows(); first += block_samples) {
+        const Eigen::Index samples = std::min(block_samples, error.rows() - first);
+        const Eigen::Index added = samples * outputs;
+        const Eigen::VectorXd weights = weight.replicate(samples, 1);
+        Eigen::MatrixXd rows(count + 1 + added, count + 1);
+        rows.topRows(count + 1) = factor;
+        const Eigen::MatrixXd block = data.regressor(Eigen::seqN(first * outputs, added), independent);
+        rows.bottomLeftCorner(added, count) = weights.asDiagonal() * block;
+        rows.col(count).tail(added) = weights.cwiseProduct(stacked(error.middleRows(first, samples)));
+        factor = triangular_factor(rows);
+    }
+    return factor;
 }
 
 struct Solution {
@@ -47,30 +67,33 @@ struct Solution {
     double condition = 0;
 };
 
-/// Returns the smallest change that minimizes the residual of `error`, and its standard deviations.
-Solution solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& error, const FitNoise& noise) {
-    const Eigen::Index samples = columns.rows() / noise.deviation.size();
-    const Eigen::VectorXd weight = row_weights(noise.deviation.cwiseInverse(), samples);
-    Eigen::MatrixXd weighted = weight.asDiagonal() * columns;
-    Eigen::VectorXd length = weighted.colwise().norm();
+/// Returns the smallest change of the independent parameters that minimizes the residual of `error`, and its
+/// standard deviations.
+Solution solve(const FitData& data, const std::vector<Eigen::Index>& independent,
+               const Eigen::MatrixXd& error, const FitNoise& noise) {
+    const Eigen::VectorXd weight = noise.deviation.cwiseInverse();
+    const auto count = std::ssize(independent);
+    const Eigen::MatrixXd factor = weighted_factor(data, independent, error, weight);
+    Eigen::MatrixXd scaled = factor.topLeftCorner(count, count);
+    Eigen::VectorXd length = scaled.colwise().norm();
     length = (length.array() > 0).select(length, 1.0);
-    weighted *= length.cwiseInverse().asDiagonal();
-    if (weighted.rows() < weighted.cols()) { // the directions without an equation are part of `v` then, too
-        weighted.conservativeResizeLike(Eigen::MatrixXd::Zero(weighted.cols(), weighted.cols()));
-    }
-    const auto [padded, s, v] = singular_values(weighted);
-    const auto u = padded.topRows(columns.rows());
+    scaled *= length.cwiseInverse().asDiagonal();
+    const auto [u, s, v] = singular_values(scaled);
     const Eigen::VectorXd inverse = (s.array() > not_excited * s[0]).select(s.cwiseInverse(), 0.0);
     const Eigen::MatrixXd spread = v * inverse.asDiagonal();
     Solution solution;
     solution.condition = s[0] / s[s.size() - 1];
-    solution.change = (spread * (u.transpose() * weight.cwiseProduct(error))).cwiseQuotient(length);
-    // The covariance includes the correlation of each output's noise: (A⁺) diag(correlation) (A⁺)ᵀ.
-    const Eigen::VectorXd root = row_weights(noise.correlation_length.cwiseSqrt(), samples);
-    const Eigen::MatrixXd middle = root.asDiagonal() * u * spread.transpose();
+    solution.change = (spread * (u.transpose() * factor.col(count).head(count))).cwiseQuotient(length);
+    // The covariance includes the correlation of each output's noise: (A⁺) diag(correlation) (A⁺)ᵀ. A factor
+    // of the correlated rows replaces A, and A⁺ = spread spreadᵀ Aᵀ.
+    const Eigen::VectorXd root = weight.cwiseProduct(noise.correlation_length.cwiseSqrt());
+    const Eigen::MatrixXd correlated =
+        weighted_factor(data, independent, error, root).topLeftCorner(count, count) *
+        length.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd middle = correlated * spread * spread.transpose();
     solution.deviation = middle.colwise().norm().transpose().cwiseQuotient(length);
     for (Eigen::Index i = 0; i < s.size(); ++i) {
-        for (Eigen::Index j = 0; inverse[i] == 0 && j < columns.cols(); ++j) {
+        for (Eigen::Index j = 0; inverse[i] == 0 && j < count; ++j) {
             if (std::abs(v(j, i)) > negligible) {
                 solution.deviation[j] = std::numeric_limits<double>::infinity();
             }
@@ -89,14 +112,12 @@ Eigen::VectorXd changed(const FitData& data, const BaseParameters& base, const E
 } // namespace
 
 BaseFit fit_base_parameters(const FitData& data, const BaseParameters& base) {
-    const Eigen::MatrixXd columns = data.regressor(Eigen::all, base.independent);
     const Eigen::MatrixXd error = errors(data, data.nominal);
-    const Eigen::VectorXd stacked_error = stacked(error);
     const FitNoise unweighted{Eigen::VectorXd::Ones(error.cols()), Eigen::VectorXd::Ones(error.cols())};
-    const Solution first = solve(columns, stacked_error, unweighted);
+    const Solution first = solve(data, base.independent, error, unweighted);
     BaseFit fit;
     fit.noise = noise_of(errors(data, changed(data, base, first.change)));
-    const Solution solution = solve(columns, stacked_error, fit.noise);
+    const Solution solution = solve(data, base.independent, error, fit.noise);
     fit.nominal = base.combination * data.nominal;
     fit.value = fit.nominal + solution.change;
     fit.deviation = solution.deviation;

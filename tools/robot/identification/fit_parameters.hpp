@@ -37,7 +37,8 @@ struct BaseFit {
 };
 
 /// Fits the base parameters by least squares, with weights from the outputs' residuals in an unweighted fit.
-/// Parameters that the recording does not excite remain nominal.
+/// Parameters that the recording does not excite remain nominal. Needs little memory beyond `data`. Cost:
+/// O(T m b²) for b base parameters.
 BaseFit fit_base_parameters(const FitData& data, const BaseParameters& base);
 
 /// Returns physically consistent parameters of the bodies (10 each, in log-Cholesky coordinates), by the

@@ -24,10 +24,11 @@ std::vector<int> samples_since_gap(const TrainingData& data) {
 
 } // namespace
 
-LagSpacing spacing_of(double window_s, double period_s, int least_lags, int most_lags) {
+LagSpacing spacing_of(double window_s, double period_s, int most_lags) {
     const double samples = std::max(1.0, std::round(window_s / period_s));
     const double every = std::max(1.0, std::ceil(samples / most_lags));
-    return {std::max(least_lags, static_cast<int>(std::round(samples / every))), static_cast<int>(every)};
+    return {std::max(least_window_lags, static_cast<int>(std::round(samples / every))),
+            static_cast<int>(every)};
 }
 
 TrainingData spaced_data(const TrainingData& data, int every) {
@@ -52,7 +53,7 @@ TrainingData spaced_data(const TrainingData& data, int every) {
             }
             spaced.positions.row(row) = data.positions.middleRows(t - every + 1, every).colwise().mean();
             spaced.outputs.row(row) = data.outputs.row(t);
-            spaced.moment.push_back(t);
+            spaced.time_order.push_back(t);
             spaced.gap_before.push_back(follows && since >= 2 * every ? 0 : 1);
             follows = true;
             ++row;

@@ -17,16 +17,21 @@ struct LagSpacing {
     int every = 1; ///< N >= 1
 };
 
+/// Least number of lags of a window that is given in seconds.
+inline constexpr int least_window_lags = 2;
+/// Largest number of lags of such a window, if groups of samples are permitted.
+inline constexpr int most_spaced_lags = 20;
+
 /// Returns the spacing for a window of `window_s` at this sample period: every sample up to `most_lags` lags,
-/// otherwise groups of samples. At least `least_lags` lags. O(1).
-LagSpacing spacing_of(double window_s, double period_s, int least_lags = 2, int most_lags = 20);
+/// otherwise groups of samples. At least least_window_lags lags. O(1).
+LagSpacing spacing_of(double window_s, double period_s, int most_lags = most_spaced_lags);
 
 /// Number of samples in the estimator's window, without the newest.
 inline int dense_lags(const LagSpacing& spacing) { return (spacing.lags + 1) * spacing.every - 1; }
 
 /// Returns `data` for training with the spacing: the means of the last `every` positions at each sample, as
 /// `every` interleaved sequences with `every` times the period, one after the other. The rows are therefore
-/// not in chronological order; `moment` has their samples. The first `every` - 1 samples after a gap,
+/// not in chronological order; `time_order` has their samples. The first `every` - 1 samples after a gap,
 /// velocities and accelerations are left out. Returns `data` itself for `every` = 1.
 TrainingData spaced_data(const TrainingData& data, int every);
 

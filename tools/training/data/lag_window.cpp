@@ -7,14 +7,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dfdyn::tools {
 namespace {
 
 constexpr double held_fraction = 1e-3; // of the largest joint's standard deviation
+// rad (m). A brake or a gear yields by some 0.3 mrad with the arm, and a fine encoder measures that as
+// motion: scaled to unit deviation, a later motion of that joint would be an input of hundreds of deviations.
+// The types of the joints are unknown here, and a slide of +-1 mm (7e-4 m) is to be learned.
+constexpr double held_deviation = 5e-4;
+// of the noise: also the mean of fifty positions of an encoder that toggles is no motion
+constexpr double held_multiple = 30;
 // of |r| times the joint's standard deviation; rounding errors are about 1e-15
 constexpr double rounding_fraction = 1e-10;
-constexpr double pooled_floor = 1e-6; // of a typical joint's standard deviation
+constexpr double rounding_step = 1e-6; // of the joint's standard deviation
+constexpr double pooled_floor = 1e-6;  // of a typical joint's standard deviation
 constexpr std::size_t block_rows = 512;
 
 /// Triangular factor of `factor` with the rows appended.
@@ -36,6 +44,30 @@ Eigen::RowVectorXd window_means(const Eigen::MatrixXd& positions, const RowList&
         sum += lag_windows(positions, block_of(rows, first), lags).colwise().sum();
     }
     return sum / static_cast<double>(rows.size());
+}
+
+/// Returns the smallest change of a joint from a row to the next that exceeds `rounding`; infinite if there
+/// is none.
+double smallest_step(const Eigen::MatrixXd& positions, const RowList& rows, Eigen::Index joint,
+                     double rounding) {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Index row : rows) {
+        const double step = row > 0 ? std::abs(positions(row, joint) - positions(row - 1, joint)) : 0;
+        smallest = step > rounding ? std::min(smallest, step) : smallest;
+    }
+    return smallest;
+}
+
+/// Returns the standard deviation of white noise with the third differences of a joint's windows, or the
+/// differences of the highest order that they have.
+double white_noise(const Eigen::MatrixXd& factor) {
+    Eigen::VectorXd row = Eigen::VectorXd::Unit(factor.cols(), 0);
+    for (Eigen::Index order = 1; order <= std::min<Eigen::Index>(3, factor.cols() - 1); ++order) {
+        for (Eigen::Index lag = order; lag > 0; --lag) {
+            row[lag] -= row[lag - 1];
+        }
+    }
+    return (factor.triangularView<Eigen::Upper>() * row).norm() / row.norm();
 }
 
 } // namespace
@@ -69,15 +101,29 @@ LagSpread::LagSpread(const Eigen::MatrixXd& positions, const RowList& rows, int 
         factor /= std::sqrt(static_cast<double>(rows.size()));
         position_deviation_.push_back(factor.col(0).norm());
     }
-    widest_ = *std::max_element(position_deviation_.begin(), position_deviation_.end());
+    const double widest = *std::max_element(position_deviation_.begin(), position_deviation_.end());
+    for (std::size_t joint = 0; joint < factors_.size(); ++joint) {
+        const double deviation = position_deviation_[joint];
+        const double step =
+            smallest_step(positions, rows, static_cast<Eigen::Index>(joint), rounding_step * deviation);
+        held_.push_back(deviation <= held_fraction * widest &&
+                        (deviation <= held_deviation ||
+                         deviation <= held_multiple * std::max(step, white_noise(factors_[joint]))));
+    }
 }
 
-bool LagSpread::held(Eigen::Index joint) const {
-    return position_deviation_[static_cast<std::size_t>(joint)] <= held_fraction * widest_;
+std::vector<std::size_t> LagSpread::held_joints() const {
+    std::vector<std::size_t> result;
+    for (std::size_t joint = 0; joint < held_.size(); ++joint) {
+        if (held_[joint]) {
+            result.push_back(joint);
+        }
+    }
+    return result;
 }
 
 double LagSpread::deviation(Eigen::Index joint, const Eigen::VectorXd& row) const {
-    if (held(joint)) {
+    if (held_[static_cast<std::size_t>(joint)]) {
         return 0;
     }
     const auto index = static_cast<std::size_t>(joint);
@@ -96,10 +142,10 @@ Eigen::MatrixXd LagSpread::pooled_factor() const {
     Eigen::MatrixXd pooled = Eigen::MatrixXd::Zero(width, width);
     int moving = 0;
     for (Eigen::Index joint = 0; joint < joints(); ++joint) {
-        if (held(joint)) {
+        const auto index = static_cast<std::size_t>(joint);
+        if (held_[index]) {
             continue;
         }
-        const auto index = static_cast<std::size_t>(joint);
         pooled = stacked_factor(pooled, factors_[index] / position_deviation_[index]);
         ++moving;
     }

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -21,7 +22,9 @@ class LagSpread {
     LagSpread(const Eigen::MatrixXd& positions, const RowList& rows, int lags);
 
     /// Returns the standard deviation s = |T_i r|. Returns 0 for a constant input:
-    /// - a joint whose standard deviation is below a thousandth of the largest joint's (encoder noise only);
+    /// - a held joint: its standard deviation is at most a thousandth of the largest joint's, and at most
+    /// 5e-4
+    ///   rad (m) or 30 times its own noise (of third differences, or its smallest step);
     /// - a combination that differs from 0 by rounding errors only.
     double deviation(Eigen::Index joint, const Eigen::VectorXd& row) const;
 
@@ -33,16 +36,17 @@ class LagSpread {
     /// typical joint, which makes rows comparable.
     Eigen::MatrixXd pooled_factor() const;
 
+    /// Returns the held joints, from 0 and ascending.
+    std::vector<std::size_t> held_joints() const;
+
     Eigen::Index joints() const { return static_cast<Eigen::Index>(factors_.size()); }
     int lags() const { return lags_; }
 
   private:
-    bool held(Eigen::Index joint) const;
-
     int lags_;
     std::vector<Eigen::MatrixXd> factors_;   // T_i, (M+1) x (M+1)
     std::vector<double> position_deviation_; // |first column of T_i|
-    double widest_ = 0;
+    std::vector<bool> held_;
 };
 
 } // namespace dfdyn::tools

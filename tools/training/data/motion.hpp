@@ -4,13 +4,19 @@
 #include "tools/model/inputs/row_family.hpp"
 #include "tools/training/data/lag_window.hpp"
 #include "tools/training/data/training_data.hpp"
-#include "tools/training/physics/regressor.hpp"
 
 #include <Eigen/Core>
 
 #include <memory>
 
 namespace dfdyn::tools {
+
+/// Position, velocity and acceleration of an arm: n joints each, in rad (m), per s and per s^2.
+struct MotionState {
+    Eigen::VectorXd position;
+    Eigen::VectorXd velocity;
+    Eigen::VectorXd acceleration;
+};
 
 /// Motion of a set of samples as the input of the physics: N x n each, in rad (m), per s, per s^2.
 struct MotionSamples {

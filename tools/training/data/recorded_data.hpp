@@ -22,8 +22,11 @@ void copy_derivatives(TrainingData& data, std::span<const Recording> recordings)
 double estimate_position_noise_bound(const TrainingData& data);
 
 /// Estimates velocities and accelerations with the firmware's adaptive window over at most `lags` + 1
-/// positions.
+/// positions; of these only one in `every`, from the newest on. O(T n (lags / every)^2).
 void estimate_derivatives(TrainingData& data, std::span<const Recording> recordings, int lags,
-                          double position_noise_bound);
+                          double position_noise_bound, int every = 1);
+
+/// Returns the spacing with which a window of `lags` + 1 positions has at most 41.
+int derivative_spacing(int lags);
 
 } // namespace dfdyn::tools

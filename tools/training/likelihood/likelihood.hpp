@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/base/numerics/random_source.hpp"
 #include "tools/training/likelihood/output_likelihood.hpp"
-#include "tools/training/search/minimise.hpp"
 
 #include <Eigen/Core>
 

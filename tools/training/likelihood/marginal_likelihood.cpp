@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/likelihood/marginal_likelihood.hpp"
 
+#include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/training/likelihood/covariance_factor.hpp"
 #include "tools/training/likelihood/gaussian_kernel.hpp"
-#include "tools/training/likelihood/stacked.hpp"
 
 #include <array>
 #include <cmath>
@@ -65,9 +65,10 @@ std::optional<LikelihoodValue> MarginalLikelihood::evaluate(const VectorXd& thet
 Bounds MarginalLikelihood::bounds() const {
     const Bounds input = input_.bounds();
     const Bounds own = outputs_.bounds();
-    return {
-        joined(std::log(noise_ratio_least), std::log(length_scale_least), stacked(input.lower, own.lower)),
-        joined(std::log(noise_ratio_most), std::log(length_scale_most), stacked(input.upper, own.upper))};
+    return {joined(std::log(noise_ratio_least), std::log(length_scale_least),
+                   concatenated(input.lower, own.lower)),
+            joined(std::log(noise_ratio_most), std::log(length_scale_most),
+                   concatenated(input.upper, own.upper))};
 }
 
 VectorXd MarginalLikelihood::start(int index, NormalSource& random) const {
@@ -76,7 +77,7 @@ VectorXd MarginalLikelihood::start(int index, NormalSource& random) const {
     const auto variant = static_cast<std::size_t>(index / 3) % 2;
     const VectorXd input = input_.start(index, random);
     return joined(std::log(noise_ratios[variant]), std::log(length_scales[variant]),
-                  stacked(input, outputs_.start(input)));
+                  concatenated(input, outputs_.start(input)));
 }
 
 std::vector<std::string> bounds_reached(double noise_ratio, double length_scale) {

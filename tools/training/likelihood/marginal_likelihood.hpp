@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/base/numerics/random_source.hpp"
 #include "tools/training/data/input_map.hpp"
 #include "tools/training/likelihood/likelihood.hpp"
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/inputs/row_family.hpp"
+#include "tools/base/numerics/bounds.hpp"
 #include "tools/training/likelihood/covariance.hpp"
 
 #include <Eigen/Core>
 
 #include <optional>
+#include <utility>
 
 namespace dfdyn::tools {
 

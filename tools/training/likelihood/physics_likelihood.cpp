@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/likelihood/physics_likelihood.hpp"
 
-#include "tools/training/likelihood/stacked.hpp"
+#include "tools/base/numerics/linear_algebra.hpp"
 
 #include <cmath>
 
@@ -70,11 +70,11 @@ LinearStatistics linear_statistics(const MatrixXd& outputs, const MatrixXd& colu
 Bounds PhysicsLikelihood::bounds() const {
     const Bounds own = physics_.bounds();
     const VectorXd range = VectorXd::Constant(prior_parameters(), log_prior_range);
-    return {stacked(own.lower, -range), stacked(own.upper, range)};
+    return {concatenated(own.lower, -range), concatenated(own.upper, range)};
 }
 
 VectorXd PhysicsLikelihood::start(const VectorXd& input) const {
-    return stacked(physics_.start(input), VectorXd::Zero(prior_parameters()));
+    return concatenated(physics_.start(input), VectorXd::Zero(prior_parameters()));
 }
 
 std::optional<Evidence> PhysicsLikelihood::evaluate(const Covariance& covariance,
@@ -100,7 +100,7 @@ std::optional<Evidence> PhysicsLikelihood::evaluate(const Covariance& covariance
         add_gradients(*best, solved_residuals(solved_outputs, solved_columns, best->at.parameters),
                       solved_columns, prior_ != PhysicsPrior::none, evidence);
     evidence.parameter_gradient =
-        stacked(physics_.pull_back(of_physics, slope), best->at.gradient.tail(prior_parameters()));
+        concatenated(physics_.pull_back(of_physics, slope), best->at.gradient.tail(prior_parameters()));
     return evidence;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "tools/training/likelihood/output_likelihood.hpp"
+#include "tools/training/likelihood/variance_components.hpp"
 #include "tools/training/physics/physics_columns.hpp"
-#include "tools/training/search/variance_components.hpp"
+
+#include <utility>
 
 namespace dfdyn::tools {
 

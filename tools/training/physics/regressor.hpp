@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/training/data/motion.hpp"
+
 #include <Eigen/Core>
 
 namespace dfdyn::tools {
-
-/// Position, velocity and acceleration of an arm: n joints each, in rad (m), per s and per s^2.
-struct MotionState {
-    Eigen::VectorXd position;
-    Eigen::VectorXd velocity;
-    Eigen::VectorXd acceleration;
-};
 
 /// Gradient of a scalar with respect to velocity and acceleration of MotionState. Positions are measured and
 /// have no parameters.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/search/fit.hpp"
 
+#include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/model/inputs/input_description.hpp"
-#include "tools/training/likelihood/stacked.hpp"
 #include "tools/training/search/fit_problem.hpp"
 #include "tools/training/search/minimise.hpp"
 #include "tools/training/search/multi_start.hpp"
@@ -103,7 +103,7 @@ class Search {
 
 PhysicsPart part_of(const FitProblem& problem, const FitModel& model, const Found& found) {
     const Hyperparameters hyper = problem.split(found.theta);
-    return {*model.columns, stacked(hyper.input, hyper.physics), found.value.physics};
+    return {*model.columns, concatenated(hyper.input, hyper.physics), found.value.physics};
 }
 
 /// Physics with white noise only.

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "tools/training/likelihood/marginal_likelihood.hpp"
-#include "tools/training/search/training_problem.hpp"
+#include "tools/training/search/hold_out.hpp"
+#include "tools/training/search/training_setup.hpp"
+#include "tools/training/training_progress.hpp"
 
 #include <Eigen/Core>
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -24,6 +25,25 @@ RowList training_part(const TrainingSetup& setup) {
     return {rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
+/// Returns the result of a least-squares problem of the physics. Throws InputError if there is none.
+template <class Result>
+Result expect_solved(std::optional<Result> result) {
+    if (!result) {
+        throw InputError("training: expected physics that least squares can solve for, found dependent "
+                         "columns");
+    }
+    return *std::move(result);
+}
+
+/// Returns the likelihood at the best point of a grid. Throws InputError if it is not finite.
+template <class Result>
+Result expect_finite(std::optional<Result> result) {
+    if (!result) {
+        throw InputError("training: expected a finite likelihood at the best point of the grid, found none");
+    }
+    return *std::move(result);
+}
+
 /// Returns the least-squares solution over `at`, or the parameters given by the caller.
 PhysicsPart physics_over(const TrainingSetup& setup, const RowList& at) {
     if (setup.options.physics.given) {
@@ -34,13 +54,9 @@ PhysicsPart physics_over(const TrainingSetup& setup, const RowList& at) {
     part.motion = setup.motion_start(setup.options.input);
     const MatrixXd columns = setup.physics(setup.options.input, at, part.choice)->evaluate(part.motion);
     const MatrixXd outputs = setup.outputs(at);
-    const auto best =
-        best_variances(linear_statistics(outputs, columns, outputs, columns), PhysicsPrior::none);
-    if (!best) {
-        throw InputError("training: expected physics that least squares can solve for, found dependent "
-                         "columns");
-    }
-    part.fit.parameters = best->at.parameters;
+    const VarianceComponents best = expect_solved(
+        best_variances(linear_statistics(outputs, columns, outputs, columns), PhysicsPrior::none));
+    part.fit.parameters = best.at.parameters;
     return part;
 }
 
@@ -94,15 +110,12 @@ Fit fit_kernel(const TrainingSetup& setup, const ProgressCallback& progress) {
                         static_cast<Index>(first.size()), counted(progress, kernel_grid_points));
     const HoldOutPoint best = finite_best(points);
     theta.head(kernel_parameters) << std::log(best.noise_ratio), std::log(best.length_scale);
-    const auto value = problem.exact().evaluate(theta);
-    if (!value) {
-        throw InputError("training: expected a finite likelihood at the best point of the grid, found none");
-    }
+    const LikelihoodValue value = expect_finite(problem.exact().evaluate(theta));
     return {problem.split(theta),
-            value->output_variance,
+            value.output_variance,
             model.offset,
             model.mean,
-            record_of(setup, value->minus_two_log_likelihood),
+            record_of(setup, value.minus_two_log_likelihood),
             std::move(points)};
 }
 
@@ -111,26 +124,20 @@ Fit fit_parametric(const TrainingSetup& setup, const ProgressCallback& progress)
     PhysicsPart part = physics_over(setup, rows);
     const MatrixXd columns = setup.physics(setup.options.input, rows, part.choice)->evaluate(part.motion);
     const MatrixXd outputs = setup.outputs(rows);
-    const auto points = hold_out_physics(columns, outputs, static_cast<Index>(training_part(setup).size()),
-                                         counted(progress, physics_grid_points));
-    if (!points) {
-        throw InputError("training: expected physics that least squares can solve for, found dependent "
-                         "columns");
-    }
-    const double prior_variance = finite_best(*points).prior_variance;
-    const auto best = best_variances(linear_statistics(outputs, columns, outputs, columns),
-                                     PhysicsPrior::shared, VectorXd::Constant(1, std::log(prior_variance)));
-    if (!best) {
-        throw InputError("training: expected a finite likelihood at the best point of the grid, found none");
-    }
-    part.fit = {best->at.parameters, best->prior_variance};
+    std::vector<HoldOutPoint> points =
+        expect_solved(hold_out_physics(columns, outputs, static_cast<Index>(training_part(setup).size()),
+                                       counted(progress, physics_grid_points)));
+    const VectorXd log_prior = VectorXd::Constant(1, std::log(finite_best(points).prior_variance));
+    const VarianceComponents best = expect_finite(best_variances(
+        linear_statistics(outputs, columns, outputs, columns), PhysicsPrior::shared, log_prior));
+    part.fit = {best.at.parameters, best.prior_variance};
     Fit fit;
     fit.hyper.input = part.motion.head(setup.input(setup.options.input, rows)->bounds().lower.size());
-    fit.output_variance = best->output_variance;
+    fit.output_variance = best.output_variance;
     fit.offset = output_offset(setup);
-    fit.record = record_of(setup, best->at.value);
+    fit.record = record_of(setup, best.at.value);
     fit.physics = std::move(part);
-    fit.hold_out = *points;
+    fit.hold_out = std::move(points);
     return fit;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/search/fit_problem.hpp"
 
+#include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/training/likelihood/feature_likelihood.hpp"
 #include "tools/training/likelihood/physics_likelihood.hpp"
-#include "tools/training/likelihood/stacked.hpp"
-#include "tools/training/start/random_features.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 
 #include <numeric>
 #include <utility>
@@ -86,7 +86,7 @@ Bounds FitProblem::bounds() const {
     }
     const Bounds input = input_->bounds();
     const Bounds own = outputs_->bounds();
-    return {stacked(input.lower, own.lower), stacked(input.upper, own.upper)};
+    return {concatenated(input.lower, own.lower), concatenated(input.upper, own.upper)};
 }
 
 VectorXd FitProblem::start(int index) const {
@@ -95,7 +95,7 @@ VectorXd FitProblem::start(int index) const {
         return MarginalLikelihood(*input_, *outputs_).start(index, random);
     }
     const VectorXd input = input_->start(index, random);
-    return stacked(input, outputs_->start(input));
+    return concatenated(input, outputs_->start(input));
 }
 
 std::unique_ptr<Likelihood> FitProblem::running() const {
@@ -129,8 +129,8 @@ VectorXd FitProblem::physics_from(const FitProblem& structured, const VectorXd& 
     }
     const InputRows rows = setup_.row_family(kind_)->evaluate(input);
     const MatrixXd wanted = setup_.motion_rows(structured.kind_)->evaluate(from.input);
-    return stacked(log_factors(rows.rows.middleRows(1, 2), wanted, setup_.spread.pooled_factor()),
-                   from.physics);
+    return concatenated(log_factors(rows.rows.middleRows(1, 2), wanted, setup_.spread.pooled_factor()),
+                        from.physics);
 }
 
 Hyperparameters FitProblem::split(const VectorXd& theta) const {

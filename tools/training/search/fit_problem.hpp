@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/training/likelihood/variance_criterion.hpp"
 #include "tools/training/search/fit.hpp"
 
 #include <Eigen/Core>

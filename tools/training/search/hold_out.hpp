@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/training/search/variance_components.hpp"
+#include "tools/training/likelihood/variance_components.hpp"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/inputs/row_family.hpp"
+#include "tools/base/numerics/bounds.hpp"
 
 #include <Eigen/Core>
 

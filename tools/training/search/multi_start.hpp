@@ -3,7 +3,8 @@
 
 #include "tools/training/likelihood/likelihood.hpp"
 #include "tools/training/search/minimise.hpp"
-#include "tools/training/train.hpp"
+#include "tools/training/training_options.hpp"
+#include "tools/training/training_progress.hpp"
 
 #include <mutex>
 #include <vector>

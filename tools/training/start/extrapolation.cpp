@@ -5,8 +5,8 @@
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/numerics/to_vector.hpp"
 #include "tools/training/data/input_map.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 #include "tools/training/start/normal_equations.hpp"
-#include "tools/training/start/random_features.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +22,7 @@ constexpr Index block_count = 5;
 constexpr Index learned_rows = 3000; // maximum over all blocks
 constexpr Index predicted_rows = 600;
 constexpr double range_share = 0.99;
+constexpr double least_range = 1e-3;            // of noise_std
 constexpr double within_two_deviations = 0.954; // for a normal distribution
 constexpr double near_novelty = 0.1;
 constexpr std::size_t near_samples_least = 50;
@@ -145,10 +146,12 @@ double extra_noise(const HeldOut& held_out, Index output, double prior_variance)
     return std::max(quantile(samples, within_two_deviations) - 1, 0.0);
 }
 
-/// Returns the prior variance in units of noise_std squared.
+/// Returns the prior variance in units of noise_std squared. The range of an output that is 0 in nearly all
+/// rows, such as with closed brakes, is its largest magnitude.
 double prior_variance(const MatrixXd& targets, Index output, double offset) {
     const VectorXd magnitudes = (targets.col(output).array() + offset).abs();
-    const double range = quantile(to_vector(magnitudes), range_share);
+    const double usual = quantile(to_vector(magnitudes), range_share);
+    const double range = usual < least_range ? magnitudes.maxCoeff() : usual;
     return range * range / 3 + offset * offset;
 }
 

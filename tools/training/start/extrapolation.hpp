@@ -4,7 +4,7 @@
 #include "tools/model/model.hpp"
 #include "tools/training/data/row_selection.hpp"
 #include "tools/training/data/training_data.hpp"
-#include "tools/training/physics/physics_start.hpp"
+#include "tools/training/start/initial_state.hpp"
 
 #include <Eigen/Core>
 

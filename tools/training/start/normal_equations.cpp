@@ -4,7 +4,7 @@
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/training/data/input_map.hpp"
-#include "tools/training/start/random_features.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -76,10 +76,10 @@ MatrixXd scaled_outputs(const OutputModel& model, const MatrixXd& outputs, const
 CovarianceFactor information_factor(MatrixXd information, double prior_variance) {
     auto factor = CovarianceFactor::of(std::move(information));
     if (!factor) {
-        throw InputError(
-            "training: expected a positive definite information matrix of the start state, found another "
-            "(prior variance " +
-            number_text(prior_variance) + ")");
+        throw InputError("training: the initial state cannot be computed: expected a positive definite "
+                         "information matrix, found another (prior variance " +
+                         number_text(prior_variance) +
+                         "); use fewer features or a longer memory, or record more motion");
     }
     return *std::move(factor);
 }
@@ -102,7 +102,9 @@ void store_covariance(const Eigen::MatrixXd& covariance, std::vector<double>& un
                       std::vector<double>& diagonal) {
     const std::optional<CovarianceFactor> factor = CovarianceFactor::of(covariance);
     if (!factor) {
-        throw InputError("start of learning: expected a positive definite covariance, found another");
+        throw InputError("extended model: the initial state cannot be computed: expected a positive definite "
+                         "covariance of the parameters, found another; check the masses and inertias of the "
+                         "robot's file");
     }
     store_inverse(information_factor(factor->inverse(), 1), unit_upper, diagonal);
 }

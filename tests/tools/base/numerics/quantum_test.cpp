@@ -36,4 +36,31 @@ TEST_CASE("too few different values have no step") {
     CHECK(quantum_of({0, 1, 2, 3, 4, 6}).value() == 1);
 }
 
+TEST_CASE("a motion of constant speed has no step, with or without a rest") {
+    std::vector<double> turning;
+    for (int i = 0; i < 400; ++i) {
+        turning.push_back(0.314 * i + 0.002 * std::sin(0.01 * i));
+    }
+    CHECK_FALSE(quantum_of(turning).has_value());
+    turning.insert(turning.end(), 500, turning.back());
+    CHECK_FALSE(quantum_of(turning).has_value());
+    std::vector<double> triangle;
+    for (int i = 0; i < 400; ++i) {
+        triangle.push_back(0.25 * std::abs(i % 40 - 20));
+    }
+    CHECK_FALSE(quantum_of(triangle).has_value());
+}
+
+TEST_CASE("a quantised signal has its step also at a constant speed") {
+    for (const double speed : {0.01, 0.3, 0.9, 1.1}) {
+        CAPTURE(speed);
+        std::vector<double> values;
+        for (int i = 0; i < 2000; ++i) {
+            values.push_back(0.01 * std::round(speed * i));
+        }
+        REQUIRE(quantum_of(values).has_value());
+        CHECK(quantum_of(values).value() == Approx(0.01));
+    }
+}
+
 } // namespace

@@ -171,6 +171,23 @@ TEST_CASE("a header with very many columns is rejected with a short message") {
     CHECK(message->size() < 450);
 }
 
+TEST_CASE("a header with more joints than a model can have is rejected") {
+    const auto header = [](std::size_t joints) {
+        std::string line = "t";
+        for (const char* const quantity : {"q", "tau"}) {
+            for (const std::string& name : joint_names(quantity, joints)) {
+                line += "," + name;
+            }
+        }
+        return line + "\n";
+    };
+    const TemporaryDirectory directory;
+    CHECK_THAT(refusal(directory, header(65), torque).value(),
+               Catch::Matchers::EndsWith("1: expected at most 64 joints, found 65"));
+    CHECK_THAT(refusal(directory, header(64), torque).value(),
+               Catch::Matchers::EndsWith("expected rows below the header, found none"));
+}
+
 TEST_CASE("a bad row is rejected with line and column and the expected and the found text") {
     const std::string head = "t,q1,tau1,x\n0,0,0,\n";
     const std::string number = ": expected a number, found ";

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace recording_form_test {
@@ -140,10 +141,12 @@ TEST_CASE("patterns and units that cannot be understood are rejected") {
     const auto [units, wrong_unit] = GENERATE(table<std::string, std::string>({
         {"deg", "--units: expected QUANTITY=UNIT with a quantity t, q, qd, qdd, tau, i or wrench, found "
                 "\"deg\""},
-        {"q=dge", "--units q: expected one of deg, m, mm, rad, turn, ticks:N (N per turn, not 0), found "
-                  "\"dge\" (did you mean \"deg\"?)"},
-        {"q=ticks:0", "--units q: expected one of deg, m, mm, rad, turn, ticks:N (N per turn, not 0), found "
-                      "\"ticks:0\""},
+        {"q=dge",
+         "--units q: expected one of deg, m, mm, mrad, rad, turn, ticks:N (N per turn, not 0), found "
+         "\"dge\" (did you mean \"deg\"?)"},
+        {"q=ticks:0",
+         "--units q: expected one of deg, m, mm, mrad, rad, turn, ticks:N (N per turn, not 0), found "
+         "\"ticks:0\""},
         {"t=min", "--units t: expected one of ms, ns, s, us, found \"min\""},
     }));
     CHECK_THROWS_MATCHES(parse_units(units), InputError, Catch::Matchers::Message(wrong_unit));
@@ -168,6 +171,38 @@ TEST_CASE("units are converted for each quantity and each joint") {
     CHECK_THROWS_MATCHES(
         read("t,q1,q2,i1,i2\n0,0,0,0,0\n", options), InputError,
         Catch::Matchers::Message("--units q: expected one unit or 2, one per column, found 3"));
+}
+
+TEST_CASE("units that joints of a robot cannot have are rejected") {
+    const std::vector<bool> turning_and_sliding{false, true};
+    const std::string one_per_joint = "--units q: expected one unit per joint, separated by |, because some "
+                                      "joints are prismatic and others turn, found one unit";
+    const std::string angle = "--units q: expected m or mm for the prismatic joint 2, found a unit of angles";
+    for (const auto& [units, message] :
+         {std::pair("q=deg", one_per_joint), std::pair("q=mm", one_per_joint), std::pair("q=deg|deg", angle),
+          std::pair("q=rad|ticks:4096", angle)}) {
+        CAPTURE(units);
+        CHECK_THROWS_MATCHES(check_units(parse_units(units), turning_and_sliding), InputError,
+                             Catch::Matchers::Message(message));
+    }
+    const std::string length =
+        "--units q: expected a unit of angles for joint 1, which turns, found mm (mrad "
+        "are thousandths of a radian)";
+    CHECK_THROWS_MATCHES(check_units(parse_units("q=mm|mm"), turning_and_sliding), InputError,
+                         Catch::Matchers::Message(length));
+    CHECK_THROWS_MATCHES(check_units(parse_units("q=mm"), {false, false}), InputError,
+                         Catch::Matchers::Message(length));
+    CHECK_THROWS_AS(check_units(parse_units("q=rad|mrad"), turning_and_sliding), InputError);
+    CHECK_THROWS_AS(check_units(parse_units("qd=turn"), {true, true}), InputError);
+    CHECK_NOTHROW(check_units(parse_units("q=mrad|mm"), turning_and_sliding));
+    CHECK_NOTHROW(check_units(parse_units("q=mrad"), {false, false}));
+    CHECK(unit_factor(parse_units("q=mrad"), "qd", 0, 2) == 1e-3);
+    CHECK_NOTHROW(check_units(parse_units("q=mm"), {}));
+    CHECK_NOTHROW(check_units(parse_units("q=deg|mm,i=mA"), turning_and_sliding));
+    CHECK_NOTHROW(check_units(parse_units("q=rad,t=ms"), turning_and_sliding));
+    CHECK_NOTHROW(check_units(parse_units("q=mm"), {true, true}));
+    CHECK_NOTHROW(check_units(parse_units("q=deg"), {false, false}));
+    CHECK_NOTHROW(check_units(parse_units("q=deg"), {}));
 }
 
 TEST_CASE("the time is in any of the usual columns and units") {

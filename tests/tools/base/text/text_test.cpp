@@ -24,6 +24,14 @@ TEST_CASE("shown keeps a path on one line and keeps its letters") {
                                         "fung\\x0a.csv");
 }
 
+TEST_CASE("shell_word quotes what a shell would change") {
+    CHECK(tools::shell_word("../run-2/model.json") == "../run-2/model.json");
+    CHECK(tools::shell_word("") == "''");
+    CHECK(tools::shell_word("my arm/$HOME") == "'my arm/$HOME'");
+    CHECK(tools::shell_word("~/arm") == "'~/arm'");
+    CHECK(tools::shell_word("Ann's") == R"('Ann'\''s')");
+}
+
 TEST_CASE("listed makes names printable and short") {
     CHECK(tools::listed(std::vector<std::string>{"T \xc2\xb0", std::string(41, 'x')}) ==
           "T \\xc2\\xb0, " + std::string(40, 'x') + "...");

@@ -5,7 +5,7 @@
 #include "tests/tools/training/arm_data.hpp"
 #include "tools/training/data/input_map.hpp"
 #include "tools/training/data/row_selection.hpp"
-#include "tools/training/search/training_problem.hpp"
+#include "tools/training/search/training_setup.hpp"
 #include "tools/training/train.hpp"
 
 #include <algorithm>
@@ -91,8 +91,8 @@ TEST_CASE("the start of learning gets the rows of interleaved samples in order o
     REQUIRE(rows.size() > 300);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto row = static_cast<std::size_t>(rows[i]);
-        CHECK(spaced.outputs.row(rows[i]) == data.outputs.row(spaced.moment[row]));
-        CHECK((i == 0 || spaced.moment[row] > spaced.moment[static_cast<std::size_t>(rows[i - 1])]));
+        CHECK(spaced.outputs.row(rows[i]) == data.outputs.row(spaced.time_order[row]));
+        CHECK((i == 0 || spaced.time_order[row] > spaced.time_order[static_cast<std::size_t>(rows[i - 1])]));
     }
 }
 

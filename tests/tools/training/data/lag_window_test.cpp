@@ -7,6 +7,8 @@
 #include "tests/tools/training/numerics.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace lag_window_test {
 
@@ -74,6 +76,45 @@ TEST_CASE("LagSpread treats joints that do not move as constant") {
     CHECK(spread.deviation(2, velocity) == 0);
     CHECK(spread.deviation(3, position) > 0.1);
     CHECK(spread.deviation(3, velocity) == 0);
+}
+
+TEST_CASE("LagSpread scales a joint that moves far less than another, as a slide in metres") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    tools::NormalSource random(dfdyn::tests::seed());
+    MatrixXd positions = dfdyn::tests::arm_data(600, 4, 1, random).positions;
+    positions.col(1) *= 8e-4;                        // a slide of about 1 mm
+    positions.col(2) = 3e-4 * random.matrix(600, 1); // a held joint with a noisy sensor
+    for (Eigen::Index t = 0; t < 600; ++t) {
+        positions(t, 3) = 1 + (t > 300 ? 3e-4 : 0); // a held joint that yields by one step of its encoder
+    }
+    const VectorXd position = VectorXd::Unit(lags + 1, 0);
+    for (const int order : {2, lags}) {
+        CAPTURE(order);
+        const tools::RowList rows = dfdyn::tests::rows_between(order, 600);
+        const tools::LagSpread spread(positions, rows, order);
+        const VectorXd newest = position.head(order + 1);
+        CHECK(spread.deviation(1, newest) ==
+              Approx(naive_deviation(positions, rows, 1, newest)).epsilon(1e-10));
+        CHECK(spread.deviation(2, newest) == 0);
+        CHECK(spread.deviation(3, newest) == 0);
+    }
+}
+
+TEST_CASE("LagSpread treats a joint as held that yields by 0.3 mrad, however fine its encoder") {
+    MatrixXd positions(2000, 2);
+    for (Eigen::Index t = 0; t < 2000; ++t) {
+        const double phase = 0.01 * static_cast<double>(t);
+        positions(t, 0) = 1.5 * std::sin(phase);
+        positions(t, 1) = 1 + 6e-6 * std::round(50 * std::sin(1.1 * phase)); // 20 bits
+    }
+    const tools::RowList rows = dfdyn::tests::rows_between(lags, 2000);
+    const VectorXd position = VectorXd::Unit(lags + 1, 0);
+    const tools::LagSpread spread(positions, rows, lags);
+    CHECK(spread.deviation(1, position) == 0);
+    CHECK(spread.held_joints() == std::vector<std::size_t>{1});
+    positions.col(0) /= 10; // beside a slower arm the same motion is not small
+    CHECK(tools::LagSpread(positions, rows, lags).held_joints().empty());
+    CHECK(tools::LagSpread(positions, rows, lags).deviation(1, position) > 1e-4);
 }
 
 TEST_CASE("the pooled factor measures rows in standard deviations of a typical joint") {

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/data/training_data.hpp"
 
+#include "dfdyn/input/adaptive_window.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/training/data/recorded_data.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace training_data_test {
 
@@ -25,6 +30,46 @@ std::string message(const tools::TrainingData& data, InputKind kind = InputKind:
         return error.what();
     }
     return "";
+}
+
+/// One joint at 5 kHz.
+tools::Recording fast_recording() {
+    tools::Recording recording;
+    recording.source = "made up";
+    recording.position.names = {"q1"};
+    recording.output.names = {"i1"};
+    for (int row = 0; row < 600; ++row) {
+        const double t = 2e-4 * row;
+        recording.time_s.push_back(t);
+        recording.time_ns.push_back(200'000L * row);
+        recording.gap_before.push_back(row == 0 ? 1 : 0);
+        recording.position.values.push_back(1e-4 * std::round(1e4 * (std::sin(5 * t) + 0.1 * t)));
+        recording.output.values.push_back(0);
+    }
+    return recording;
+}
+
+TEST_CASE("derivatives of a long window are those of at most 41 of its positions") {
+    CHECK(tools::derivative_spacing(1) == 1);
+    CHECK(tools::derivative_spacing(40) == 1);
+    CHECK(tools::derivative_spacing(41) == 2);
+    CHECK(tools::derivative_spacing(400) == 10);
+    const tools::Recording recording = fast_recording();
+    tools::TrainingData data = tools::gather_training_data({&recording, 1});
+    tools::estimate_derivatives(data, {&recording, 1}, 400, 2e-4, 10);
+    for (const Eigen::Index row : {3, 57, 599}) {
+        CAPTURE(row);
+        std::vector<double> ages, values;
+        for (Eigen::Index lag = 0; lag <= std::min<Eigen::Index>(row, 400); lag += 10) {
+            ages.push_back(-2e-4 * static_cast<double>(lag));
+            values.push_back(data.positions(row - lag, 0));
+        }
+        REQUIRE(values.size() <= 41);
+        const dfdyn::AdaptiveWindow<double> window(ages.data(), values.data(), 1,
+                                                   static_cast<int>(values.size()), 2e-4);
+        CHECK(data.velocities(row, 0) == Approx(window.velocity()).epsilon(1e-9).margin(1e-9));
+        CHECK(data.accelerations(row, 0) == Approx(window.acceleration()).epsilon(1e-9).margin(1e-9));
+    }
 }
 
 TEST_CASE("valid training data pass") { CHECK(message(small_data()).empty()); }

@@ -65,4 +65,33 @@ TEST_CASE("the gradient of FeatureLikelihood equals finite differences") {
                                        dfdyn::tests::differences(value_at, problem.theta)) < 1e-6);
 }
 
+TEST_CASE("FeatureLikelihood is the same in blocks of samples as in one") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    const Problem problem;
+    const auto value_of = [&](Eigen::Index rows_at_once) {
+        return tools::FeatureLikelihood(*problem.input, problem.output_likelihood, problem.omega,
+                                        rows_at_once)
+            .evaluate(problem.theta);
+    };
+    const auto whole = value_of(41);
+    REQUIRE(whole);
+    for (const Eigen::Index rows_at_once : {1, 7, 40}) {
+        CAPTURE(rows_at_once);
+        const auto blocks = value_of(rows_at_once);
+        REQUIRE(blocks);
+        CHECK(blocks->minus_two_log_likelihood == Approx(whole->minus_two_log_likelihood).epsilon(1e-10));
+        CHECK(dfdyn::tests::relative_error(blocks->gradient, whole->gradient) < 1e-8);
+        CHECK(dfdyn::tests::relative_error(blocks->output_variance, whole->output_variance) < 1e-10);
+    }
+}
+
+TEST_CASE("the features of a long recording are computed in blocks of at most 200 MB") {
+    for (const Eigen::Index frequencies : {10, 250, 5000}) {
+        const Eigen::Index rows = tools::feature_rows_at_once(frequencies);
+        CHECK(rows >= 1);
+        CHECK(static_cast<double>(rows * frequencies) * 9 * sizeof(double) <= 2e8);
+    }
+    CHECK(tools::feature_rows_at_once(250) > 10'000);
+}
+
 } // namespace feature_likelihood_test

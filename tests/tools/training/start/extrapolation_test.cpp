@@ -10,6 +10,7 @@
 #include "tools/training/train.hpp"
 
 #include <cmath>
+#include <vector>
 
 namespace extrapolation_training_test {
 
@@ -106,6 +107,22 @@ TEST_CASE(
     model.extrapolation.reset(); // the estimator of the paper
     const Outcome paper = frozen(model, there, mean);
     CHECK(paper.error.maxCoeff() > far.error.maxCoeff() + 0.05);
+}
+
+TEST_CASE("an output that is zero in nearly all rows has the range of its largest value") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    tools::TrainingData data = small_arm();
+    data.outputs.col(0).head(995).setZero(); // closed brakes
+    data.outputs.col(0).tail(5).setConstant(-6);
+    tools::TrainedModel model;
+    model.outputs.offset = {0, 0};
+    model.outputs.noise_std = {2, 1};
+    const std::vector<double> variances =
+        tools::output_variances(model, data, dfdyn::tests::rows_between(0, 1000));
+    CHECK(variances[0] == Approx(3 * 3 / 3.0));
+    const double largest = data.outputs.col(1).cwiseAbs().maxCoeff();
+    CHECK(variances[1] > 0);
+    CHECK(variances[1] < largest * largest / 3);
 }
 
 TEST_CASE("without shrinkage training gives the model of the paper") {

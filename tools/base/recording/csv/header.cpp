@@ -298,6 +298,13 @@ const std::string& Header::time_column() const {
                                             slot.begin())];
 }
 
+void require_joint_count(std::size_t joint_count, const std::string& where) {
+    if (joint_count > largest_recorded_joint_count) {
+        throw InputError(where + ": expected at most " + std::to_string(largest_recorded_joint_count) +
+                         " joints, found " + std::to_string(joint_count));
+    }
+}
+
 Header parse_header(std::string_view line, const std::string& where, ReadOptions options) {
     Header header;
     header.separator = separator_of(line);
@@ -308,6 +315,7 @@ Header parse_header(std::string_view line, const std::string& where, ReadOptions
     Builder builder(header, roles, where);
     const std::size_t found = count_joints(roles, where, !options.columns.empty());
     require_chain(found, where, options);
+    require_joint_count(found, where);
     const std::size_t joint_count = std::max({found, options.joint_count, std::size_t{1}});
     options.outputs = chosen_outputs(roles, joint_count, options);
     builder.require(needed_columns(joint_count, options));

@@ -30,9 +30,12 @@ struct Header {
     const std::string& time_column() const;
 };
 
+/// Throws InputError, starting with `where`, for more joints than a model can have.
+void require_joint_count(std::size_t joint_count, const std::string& where);
+
 /// Reads the line of a recording with the names of its columns. Throws InputError, starting with `where`
-/// (file and line), for a line that is no header, a repeated name, a missing column of `options`, or patterns
-/// and units that do not fit.
+/// (file and line), for a line that is no header, a repeated name, a missing column of `options`, patterns
+/// and units that do not fit, or too many joints.
 Header parse_header(std::string_view line, const std::string& where, ReadOptions options);
 
 } // namespace dfdyn::tools

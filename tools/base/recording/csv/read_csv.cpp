@@ -260,7 +260,9 @@ Recording read_recording(const std::filesystem::path& path, const ReadOptions& o
             throw InputError(shown(path) +
                              ": --columns: expected a CSV recording, found a ROS 2 bag (--topic)");
         }
-        return read_bag_recording(path, options);
+        Recording recording = read_bag_recording(path, options);
+        require_joint_count(recording.joint_count(), shown(path));
+        return recording;
     }
     if (!options.topics.empty()) {
         throw InputError(shown_input(path) +

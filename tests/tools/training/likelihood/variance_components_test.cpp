@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/search/variance_components.hpp"
+#include "tools/training/likelihood/variance_components.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/training/likelihood/linear_model.hpp"
 #include "tests/tools/training/numerics.hpp"
-#include "tests/tools/training/search/linear_model.hpp"
 
 namespace variance_components_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/physics/machine_size.hpp"
+#include "tools/training/physics/parameter_sizes.hpp"
 
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"

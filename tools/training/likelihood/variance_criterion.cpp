@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/search/variance_criterion.hpp"
+#include "tools/training/likelihood/variance_criterion.hpp"
 
 #include <Eigen/Cholesky>
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/numerics/linear_algebra.hpp"
-#include "tools/training/physics/robot_prior.hpp"
+#include "tools/training/start/robot_prior.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/synthetic_physics.hpp"
 #include "tools/model/structure.hpp"
+#include "tools/training/train.hpp"
 
 namespace robot_prior_test {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/numerics/linear_algebra.hpp"
-#include "tools/training/start/start_state.hpp"
+#include "tools/training/start/batch_start.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/support/row_family.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tools/training/data/input_map.hpp"
-#include "tools/training/start/random_features.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 
 #include <cmath>
 #include <limits>
 
-namespace start_state_test {
+namespace batch_start_test {
 
 namespace tools = dfdyn::tools;
 using Eigen::Index;
@@ -127,8 +127,9 @@ TEST_CASE("a start with a singular information matrix is rejected with its prior
     problem.rows.resize(features); // for twice as many weights
     CHECK_THROWS_WITH(
         tools::batch_start(problem.model, problem.data, problem.rows),
-        Catch::Matchers::ContainsSubstring("expected a positive definite information matrix of the start "
-                                           "state, found another (prior variance inf"));
+        "training: the initial state cannot be computed: expected a positive definite information "
+        "matrix, found another (prior variance inf); use fewer features or a longer memory, or record "
+        "more motion");
 }
 
-} // namespace start_state_test
+} // namespace batch_start_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/start/random_features.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 
 #include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/base/numerics/random_source.hpp"

@@ -20,14 +20,15 @@ inline constexpr double parameter_margin = 100;
 /// ten per body of `chain`, then `effects`. The reach r (m) is the sum of the distances between joints and of
 /// prismatic travels, up to the tip or the farthest centre of mass. With it, the mass m of the moving links
 /// (kg), and per joint the torque T = max(effort limit, m g r) and the velocity limit v, the sizes are
-/// - mass: m; first moment: m r; rotational inertia and rotor inertia: m r^2, because a column represents
-///   combinations over all links;
-/// - Coulomb and Stribeck friction, ripple and offset: T; viscous friction: T / v; spring: T per rad;
-/// - bias of a force/torque sensor: m g (forces), m g r (torques).
+/// - of a body: mass m; first moment m r; rotational inertia m r^2, because a column represents combinations
+///   over all links;
+/// - of an effect, by its ParameterSize: `effort` T; `effort_per_velocity` T / v; `inertia` m r^2; `weight`
+///   m g (forces), m g r (torques).
 ///
-/// Prismatic joints: forces, T = max(effort limit, m g). Effort limits above 100 m g r and velocity limits
-/// above 100 rad/s (m/s) are placeholders and ignored; v is then 1. If the robot's file contains no mass, m
-/// follows from the largest effort limit as T / (g r); without both it is 1000 kg. r is at least 1 cm.
+/// Prismatic joints: forces, T = max(effort limit, m g), and `inertia` m. Effort limits above 100 m g r and
+/// velocity limits above 100 rad/s (m/s) are placeholders and ignored; v is then 1. If the robot's file
+/// contains no mass, m follows from the largest effort limit as T / (g r); without both it is 1000 kg. r is
+/// at least 1 cm.
 Eigen::VectorXd parameter_sizes(const Robot& robot, const ChainModel& chain,
                                 const std::vector<EffectModel>& effects);
 

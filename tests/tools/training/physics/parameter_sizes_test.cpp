@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/physics/machine_size.hpp"
+#include "tools/training/physics/parameter_sizes.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/robot/arms.hpp"
@@ -9,7 +9,7 @@
 
 #include <limits>
 
-namespace machine_size_test {
+namespace parameter_sizes_test {
 
 using namespace dfdyn::tools;
 using Eigen::VectorXd;
@@ -107,4 +107,4 @@ TEST_CASE("a parameter beyond its bound is rejected with its name and value and 
     CHECK_THROWS_AS(check_parameters(physics, sizes), InputError);
 }
 
-} // namespace machine_size_test
+} // namespace parameter_sizes_test

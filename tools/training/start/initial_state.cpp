@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/physics/physics_start.hpp"
+#include "tools/training/start/initial_state.hpp"
 
+#include "tools/training/start/batch_start.hpp"
 #include "tools/training/start/normal_equations.hpp"
-#include "tools/training/start/start_state.hpp"
 
 #include <utility>
 
@@ -74,11 +74,11 @@ ParameterPrior ParameterPrior::independent(Index p, double prior_variance) {
     return {VectorXd::Zero(p), MatrixXd::Identity(p, p) / prior_variance};
 }
 
-CombinedPrior parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior) {
+InitialState parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior) {
     return {{}, solved(physics_equations(problem, prior), prior)};
 }
 
-CombinedPrior residual_start(const PhysicsProblem& problem, const VectorXd& parameters) {
+InitialState residual_start(const PhysicsProblem& problem, const VectorXd& parameters) {
     ScaledProblem scaled(problem);
     for (Index k = 0; k < scaled.outputs.cols(); ++k) {
         scaled.outputs.col(k) -= scaled.columns_of(k) * parameters;
@@ -86,7 +86,7 @@ CombinedPrior residual_start(const PhysicsProblem& problem, const VectorXd& para
     return {batch_start(problem.model, problem.data, problem.rows, scaled.outputs), {parameters, {}, {}, {}}};
 }
 
-CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior& prior) {
+InitialState joint_initial_state(const PhysicsProblem& problem, const ParameterPrior& prior) {
     const auto samples = static_cast<Index>(problem.rows.size());
     const auto count = static_cast<Index>(problem.model.outputs.noise_std.size());
     const Index p = problem.columns.cols() / count;
@@ -105,20 +105,20 @@ CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior
         schur.right_hand_side -= coupling.transpose() * kernel.right_hand_side.col(k);
         couplings.push_back(coupling);
     }
-    CombinedPrior start{{}, solved(std::move(schur), prior)};
+    InitialState start{{}, solved(std::move(schur), prior)};
     start.physics.coupling = std::move(couplings);
     start.kernel.weights.assign(solution.data(), solution.data() + solution.rows() * count);
     store_inverse(factor, start.kernel.unit_upper, start.kernel.diagonal);
     return start;
 }
 
-CombinedPrior initial_state_of(const Structure& structure, const PhysicsProblem& problem,
-                               const ParameterPrior& prior, const std::optional<VectorXd>& fixed) {
+InitialState initial_state_of(const Structure& structure, const PhysicsProblem& problem,
+                              const ParameterPrior& prior, const std::optional<VectorXd>& fixed) {
     if (fixed && !structure.learns_parameters()) {
         return residual_start(problem, *fixed);
     }
-    CombinedPrior start =
-        structure.fits_jointly() ? combined_prior(problem, prior) : parametric_start(problem, prior);
+    InitialState start =
+        structure.fits_jointly() ? joint_initial_state(problem, prior) : parametric_start(problem, prior);
     return structure.learns_parameters() ? start : residual_start(problem, start.physics.parameters);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/physics/robot_prior.hpp"
+#include "tools/training/start/robot_prior.hpp"
 
 #include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/base/numerics/random_source.hpp"

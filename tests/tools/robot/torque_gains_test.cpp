@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/physics/torque_constants.hpp"
+#include "tools/robot/identification/torque_gains.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/random_robot.hpp"
@@ -9,8 +9,10 @@
 #include "tools/training/physics/robot_regressor.hpp"
 
 #include <cmath>
+#include <stdexcept>
+#include <vector>
 
-namespace {
+namespace torque_gains_test {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::random_robot;
@@ -22,32 +24,31 @@ using Eigen::VectorXd;
 constexpr double sign_velocity = 0.05;
 
 /// Currents of an arm in random states: the gains times the nominal torques and friction.
-TrainingData currents(std::mt19937_64& engine, const Robot& robot, const std::vector<double>& gains) {
+RecordedMotion currents(std::mt19937_64& engine, const Robot& robot, const std::vector<double>& gains) {
     const auto joints = static_cast<Index>(robot.joints.size());
     const auto draw = [&] { return uniform(engine, -2, 2); };
-    TrainingData data;
-    data.positions = MatrixXd::NullaryExpr(400, joints, draw);
-    data.velocities = MatrixXd::NullaryExpr(400, joints, draw);
-    data.accelerations = MatrixXd::NullaryExpr(400, joints, draw);
+    RecordedMotion data;
+    RobotMotion& motion = data.motion;
+    motion.position = MatrixXd::NullaryExpr(400, joints, draw);
+    motion.velocity = MatrixXd::NullaryExpr(400, joints, draw);
+    motion.acceleration = MatrixXd::NullaryExpr(400, joints, draw);
     data.outputs = MatrixXd::Zero(400, joints);
     const auto regressor = robot_regressor(chain_model(robot, OutputKind::joint_torque), {},
                                            std::vector<double>(gains.size(), 1));
     MatrixXd rows;
     for (Index t = 0; t < 400; ++t) {
-        regressor->evaluate({data.positions.row(t).transpose(), data.velocities.row(t).transpose(),
-                             data.accelerations.row(t).transpose()},
+        regressor->evaluate({motion.position.row(t).transpose(), motion.velocity.row(t).transpose(),
+                             motion.acceleration.row(t).transpose()},
                             rows);
         const VectorXd torque = rows * nominal_parameters(robot, OutputKind::joint_torque);
         for (Index i = 0; i < joints; ++i) {
-            const double velocity = data.velocities(t, i);
+            const double velocity = motion.velocity(t, i);
             const double friction = 0.3 * velocity + 0.8 * std::tanh(velocity / sign_velocity);
             data.outputs(t, i) = gains[static_cast<std::size_t>(i)] * (torque[i] + friction) + 0.2;
         }
     }
     return data;
 }
-
-} // namespace
 
 TEST_CASE("gains are recovered from currents with friction and offsets") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -64,7 +65,7 @@ TEST_CASE("a joint without nominal torque gets the median of the other gains") {
     DFDYN_SEEDED_ENGINE(engine);
     Robot robot = random_robot(engine, 4);
     robot.joints.back().inertia *= 1e-9; // a wrist without load, whose current is friction
-    TrainingData data = currents(engine, robot, {0.08, 0.1, 0.12, 0.5});
+    RecordedMotion data = currents(engine, robot, {0.08, 0.1, 0.12, 0.5});
     data.outputs.col(3) += VectorXd::NullaryExpr(400, [&] { return uniform(engine, -0.1, 0.1); });
     const auto found = estimate_torque_gains(robot, data, sign_velocity);
     CHECK(found[1].source == TorqueGain::Source::estimated);
@@ -93,3 +94,45 @@ TEST_CASE("currents opposite to the torques at all joints give gains of one") {
         CHECK(gain.source == TorqueGain::Source::median);
     }
 }
+
+TEST_CASE("given torque constants give their inverses, and the recording is not read") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = random_robot(engine, 2);
+    const auto unread = []() -> RecordedMotion { throw std::logic_error("read"); };
+    const auto gains =
+        torque_gains(robot, OutputKind::motor_current, std::vector{8.0, 10.0}, unread, sign_velocity);
+    CHECK(output_gains(gains, 2) == std::vector{1 / 8.0, 1 / 10.0});
+    CHECK(gains[0].source == TorqueGain::Source::given);
+    CHECK_THROWS_WITH(torque_gains(robot, OutputKind::motor_current, std::vector{8.0}, unread, sign_velocity),
+                      "--torque-constants: expected 2, one per joint, found 1");
+}
+
+TEST_CASE("estimated torque constants that no motor has are rejected") {
+    using Source = TorqueGain::Source;
+    const auto check = [](double gain, Source source) {
+        check_estimated_gains(std::vector<TorqueGain>{{0.1, Source::estimated}, {gain, source}});
+    };
+    CHECK_NOTHROW(check(2e-4, Source::estimated)); // 5000 N m/A
+    CHECK_NOTHROW(check(3000, Source::median));    // a small servo in mA
+    CHECK_NOTHROW(check(3.4e-5, Source::given));
+    CHECK_NOTHROW(check_estimated_gains({}));
+    CHECK_THROWS_WITH(check(4e-5, Source::estimated),
+                      "torque constants estimated with the robot's masses: expected 0.0001 to 10000 N m/A, "
+                      "found 10, 25000: check the robot and the unit of the currents (--units i=mA), or "
+                      "give --torque-constants");
+    CHECK_THROWS(check(2e4, Source::median));
+}
+
+TEST_CASE("without torque constants the gains are estimated, and other outputs have a gain of one") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = random_robot(engine, 2);
+    const RecordedMotion data = currents(engine, robot, {0.11, 0.09});
+    const auto recorded = [&] { return data; };
+    const auto gains = torque_gains(robot, OutputKind::motor_current, {}, recorded, sign_velocity);
+    REQUIRE(gains.size() == 2);
+    CHECK(gains[1].gain == estimate_torque_gains(robot, data, sign_velocity)[1].gain);
+    CHECK(output_gains(torque_gains(robot, OutputKind::joint_torque, {}, recorded, sign_velocity), 2) ==
+          std::vector{1.0, 1.0});
+}
+
+} // namespace torque_gains_test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/numerics/linear_algebra.hpp"
-#include "tools/training/physics/physics_start.hpp"
+#include "tools/training/start/initial_state.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
@@ -8,13 +8,13 @@
 #include "tests/tools/training/arm_data.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/training/data/input_map.hpp"
-#include "tools/training/start/random_features.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 
 #include <Eigen/LU>
 
 #include <cmath>
 
-namespace physics_start_test {
+namespace initial_state_test {
 
 namespace tools = dfdyn::tools;
 using Eigen::Index;
@@ -134,7 +134,7 @@ TEST_CASE("the start of SPK in block-arrow form is the solution for all unknowns
     if (GENERATE(false, true)) {
         problem.know();
     }
-    const tools::CombinedPrior start = tools::combined_prior(problem.physics(), problem.prior);
+    const tools::InitialState start = tools::joint_initial_state(problem.physics(), problem.prior);
     const MatrixXd inverse = tools::inverse_matrix(problem.information(true, true));
     const VectorXd truth = inverse * problem.right_hand_side(true, true);
     CHECK(error_of(start.physics.parameters, truth.tail(parameters)) < 1e-9);
@@ -162,7 +162,7 @@ TEST_CASE("the start of P is the solution of ridge regression") {
     if (GENERATE(false, true)) {
         problem.know();
     }
-    const tools::CombinedPrior start = tools::parametric_start(problem.physics(), problem.prior);
+    const tools::InitialState start = tools::parametric_start(problem.physics(), problem.prior);
     const MatrixXd inverse = tools::inverse_matrix(problem.information(false, true));
     CHECK(error_of(start.physics.parameters,
                    (inverse * problem.right_hand_side(false, true)).tail(parameters)) < 1e-9);
@@ -175,7 +175,7 @@ TEST_CASE("the start of SP and SP2 is the start of NP on the residual") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     Problem problem(1);
     const VectorXd pi = problem.random.matrix(parameters, 1);
-    const tools::CombinedPrior start = tools::residual_start(problem.physics(), pi);
+    const tools::InitialState start = tools::residual_start(problem.physics(), pi);
     const VectorXd target =
         problem.right_hand_side(true, false) - [&] { // cross products of the design with the known part
             VectorXd sum = VectorXd::Zero(outputs * features + parameters);
@@ -195,8 +195,8 @@ TEST_CASE("the start of SP and SP2 is the start of NP on the residual") {
 TEST_CASE("a start whose equations cannot be solved is an error") {
     Problem problem(1);
     problem.columns(3, 2) = std::nan("");
-    CHECK_THROWS_AS(tools::combined_prior(problem.physics(), problem.prior), tools::InputError);
+    CHECK_THROWS_AS(tools::joint_initial_state(problem.physics(), problem.prior), tools::InputError);
     CHECK_THROWS_AS(tools::parametric_start(problem.physics(), problem.prior), tools::InputError);
 }
 
-} // namespace physics_start_test
+} // namespace initial_state_test

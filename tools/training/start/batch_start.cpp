@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/start/start_state.hpp"
+#include "tools/training/start/batch_start.hpp"
 
 #include "tools/training/start/normal_equations.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/training/search/variance_criterion.hpp"
+#include "tools/training/likelihood/variance_criterion.hpp"
 
 #include <Eigen/Core>
 

@@ -24,7 +24,7 @@ struct PhysicsStart {
 };
 
 /// Initial states of NP's part and of the physics.
-struct CombinedPrior {
+struct InitialState {
     StartModel kernel; ///< P: empty. SPK: `weights` holds A_k. Otherwise those of the residual.
     PhysicsStart physics;
 };
@@ -49,20 +49,20 @@ struct ParameterPrior {
 /// Returns the regularised least-squares solution (paper, Section IV-B) of P: pi^ and its covariance under
 /// the prior. The prior has the same weight under forgetting as in batch_start(). O(N m p^2 + p^3). Throws
 /// InputError if the information matrix cannot be factored.
-CombinedPrior parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior);
+InitialState parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior);
 
 /// SP, SP2: returns NP's initial state for the residual of the outputs with fixed `parameters`.
-CombinedPrior residual_start(const PhysicsProblem& problem, const Eigen::VectorXd& parameters);
+InitialState residual_start(const PhysicsProblem& problem, const Eigen::VectorXd& parameters);
 
 /// Returns the initial state of SPK in block-arrow form: the factor of Lambda_phi, common to all outputs, and
 /// the Schur complement of pi. Equal to the joint solution for all unknowns. O(N (2d)^2 + N m 2d p + (2d)^3).
-CombinedPrior combined_prior(const PhysicsProblem& problem, const ParameterPrior& prior);
+InitialState joint_initial_state(const PhysicsProblem& problem, const ParameterPrior& prior);
 
-/// Returns the initial state of a structure with physics. For a learned pi this is combined_prior() if
+/// Returns the initial state of a structure with physics. For a learned pi this is joint_initial_state() if
 /// physics and features are fitted jointly, otherwise parametric_start(). For a fixed pi this is
 /// residual_start() with `fixed` (p, in the units of PhysicsProblem's columns); without `fixed`, with the
 /// estimate under `prior`.
-CombinedPrior initial_state_of(const Structure& structure, const PhysicsProblem& problem,
-                               const ParameterPrior& prior, const std::optional<Eigen::VectorXd>& fixed);
+InitialState initial_state_of(const Structure& structure, const PhysicsProblem& problem,
+                              const ParameterPrior& prior, const std::optional<Eigen::VectorXd>& fixed);
 
 } // namespace dfdyn::tools

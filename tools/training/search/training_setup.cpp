@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/search/training_problem.hpp"
+#include "tools/training/search/training_setup.hpp"
 
+#include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/model/inputs/input_description.hpp"
-#include "tools/training/likelihood/stacked.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,8 @@ std::string gaps_text(const TrainingData& data) {
     std::size_t run = 0;
     std::size_t longest = 0;
     for (std::size_t row = 0; row < data.gap_before.size(); ++row) {
-        const bool interleaved = !data.moment.empty() && row > 0 && data.moment[row] < data.moment[row - 1];
+        const bool interleaved =
+            !data.time_order.empty() && row > 0 && data.time_order[row] < data.time_order[row - 1];
         const bool gap = row > 0 && data.gap_before[row] != 0 && !interleaved;
         gaps += gap ? 1 : 0;
         run = gap ? 1 : run + 1;
@@ -58,9 +59,9 @@ TrainingRows choose_rows(const TrainingData& data, const TrainingOptions& option
     }
     rows.moving = split.moving;
     rows.likelihood = likelihood_rows(split, options.likelihood_rows);
-    if (!data.moment.empty()) { // forgetting and blocks of time need the order
+    if (!data.time_order.empty()) { // forgetting and blocks of time need the order
         std::ranges::sort(rows.usable, {},
-                          [&](Index row) { return data.moment[static_cast<std::size_t>(row)]; });
+                          [&](Index row) { return data.time_order[static_cast<std::size_t>(row)]; });
     }
     return rows;
 }
@@ -108,7 +109,7 @@ VectorXd TrainingSetup::motion_start(InputKind kind) const {
     const RowList any{rows.moving.front()};
     NormalSource random(options.seed);
     const VectorXd start = input(kind, any)->start(0, random);
-    return stacked(start, motion(kind, any)->start(start));
+    return concatenated(start, motion(kind, any)->start(start));
 }
 
 std::unique_ptr<PhysicsColumns> TrainingSetup::physics(InputKind kind, const RowList& at,

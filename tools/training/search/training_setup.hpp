@@ -3,7 +3,7 @@
 
 #include "tools/training/data/input_map.hpp"
 #include "tools/training/physics/physics_columns.hpp"
-#include "tools/training/train.hpp"
+#include "tools/training/training_options.hpp"
 
 #include <Eigen/Core>
 

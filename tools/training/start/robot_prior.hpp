@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/training/physics/physics_start.hpp"
-#include "tools/training/search/training_problem.hpp"
+#include "tools/training/search/training_setup.hpp"
+#include "tools/training/start/initial_state.hpp"
 
 #include <Eigen/Core>
 
