@@ -6,7 +6,7 @@
 #include "tools/base/text/json_text.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/can/check/bus_check.hpp"
-#include "tools/can/families/device_page.hpp"
+#include "tools/can/families/family_catalogue.hpp"
 #include "tools/can/log/candump_log.hpp"
 #include "tools/can/recognition/recognised_bus.hpp"
 #include "tools/commands/command.hpp"
@@ -116,7 +116,7 @@ int run(const BusCheckOptions& options) {
     std::optional<RecognisedBus> recognised;
     if (options.bus.empty()) {
         recognised = recognise_bus(recorder.frames());
-        std::ranges::copy(recognised->findings, std::back_inserter(findings));
+        add_findings(*recognised, check, findings);
     }
     output.print(json_of(check, findings, recognised));
     print_bus_check(std::cout, check, findings);
@@ -138,7 +138,11 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
                      "Expected devices: docs/reference/can.md. Without --bus, families, motors and rates are "
                      "recognised")
         ->type_name("B.json");
-    command->add_option("-o,--output", options->draft, "Without --bus: writes a draft of the bus description")
+    command
+        ->add_option(
+            "-o,--output", options->draft,
+            "Without --bus: writes a draft of the bus description, if the frames contain efforts. Families "
+            "without a draft: docs/reference/devices.md")
         ->type_name("B.json");
     command->add_option("--can", options->interface, "Interface to check; nothing is sent")
         ->type_name("IFACE");
@@ -159,7 +163,7 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
     add_json_option(*command, options->json);
     command->footer("Example:\n  dfdyn buscheck --can can0 --bus bus.json --duration 5\n"
                     "  dfdyn buscheck --log run.log -o bus.json\n"
-                    "Exit status: 0 nothing is wrong, 1 there are findings, 2 bad usage or input.");
+                    "Exit status: 0 no fault found, 1 there are findings, 2 bad usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

@@ -3,6 +3,7 @@
 #include "dfdyn/hal/device/icub_2foc.hpp"
 #include "dfdyn/hal/device/odrive.hpp"
 #include "dfdyn/hal/device/robotous_rft.hpp"
+#include "dfdyn/hal/motion/encoder_reading.hpp"
 #include "dfdyn/hal/sample_assembly.hpp"
 
 #include "tests/hal/support/frames.hpp"
@@ -25,7 +26,6 @@ using Arm = SampleAssembly<float, 2, OdriveAxis, 2, WrenchOutput<RobotousRft, 16
 double angle(double time_s) { return std::sin(3 * time_s); }
 double force(double time_s) { return 100 * angle(time_s); } // steep, so that a wrong time shows
 double difference(float a, double b) { return std::abs(static_cast<double>(a) - b); }
-double seconds(std::int64_t time_ns) { return 1e-9 * static_cast<double>(time_ns); }
 
 constexpr StartupGate::Config at_once{.readings = 1, .zero_readings = 1};
 constexpr std::int64_t force_latency_ns = 1200 * us;
@@ -57,12 +57,12 @@ std::vector<Frame> traffic(std::int64_t end_ns, std::mt19937_64& engine) {
         for (std::int64_t time = 130 * us; time < end_ns; time += period) {
             const std::int64_t stamp = time + jitter(engine);
             std::array<JointValue, 1> value{};
-            value[0].position_rad = angle(seconds(stamp));
+            value[0].position_rad = angle(seconds_of(stamp));
             frames.push_back(at_time(axes[joint].encode(value).frame[0], stamp));
         }
     }
     for (std::int64_t time = 0; time < end_ns; time += 1030 * us) {
-        const double fx = force(seconds(time));
+        const double fx = force(seconds_of(time));
         const FrameList halves = sensor.encode({fx, fx / 2, -fx, 0.1, 0.2, 0.3});
         frames.push_back(at_time(halves.frame[0], time + force_latency_ns));
         frames.push_back(at_time(halves.frame[1], time + force_latency_ns + 130 * us));
@@ -87,11 +87,11 @@ TEST_CASE("a timer's samples are periodic and correct for any phases, rates and 
         REQUIRE(sample.time_ns == instant);
         // Interpolation over 1 ms at 3 rad/s and 9 rad/s² has an error of a few µrad; for the force add a
         // step.
-        REQUIRE(difference(sample.position[0], angle(seconds(instant))) < 3e-6);
-        REQUIRE(difference(sample.position[1], angle(seconds(instant))) < 3e-6);
+        REQUIRE(difference(sample.position[0], angle(seconds_of(instant))) < 3e-6);
+        REQUIRE(difference(sample.position[1], angle(seconds_of(instant))) < 3e-6);
         if (sample.output_valid) {
             ++outputs;
-            REQUIRE(difference(sample.output[0], force(seconds(instant))) < 0.011);
+            REQUIRE(difference(sample.output[0], force(seconds_of(instant))) < 0.011);
         } else {
             REQUIRE(report.output == Reason::output_not_new); // the sensor is a little slower than the timer
         }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/motion/encoder_reading.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -49,6 +51,6 @@ struct Truth {
     std::array<double, 2> slow{}, fast{}, phase{}, centre{};
 };
 
-inline double seconds_of(std::int64_t time_ns) { return 1e-9 * static_cast<double>(time_ns); }
+using hal::seconds_of;
 
 } // namespace dfdyn::tests

@@ -65,9 +65,11 @@ TEST_CASE("a CubeMars motor may answer on the identifier of its commands; byte 0
     const Frame answer = frame_of(0x002, {2, 0x9C, 0x40, 0xA1, 0x2B, 0xCD, 31, 0});
     CHECK(motor.decode(answer).kind == Kind::values);
     CHECK(motor.command(answer) == MotorCommand::none);
+    CHECK_FALSE(motor.carries_no_values(answer));
     const Frame command = motor.encode_torque(1);
     CHECK(motor.decode(command).kind == Kind::nothing);
     CHECK(motor.command(command) == MotorCommand::control);
+    CHECK(motor.carries_no_values(command));
     const Frame enable = frame_of(0x002, {255, 255, 255, 255, 255, 255, 255, 0xFC});
     CHECK(motor.decode(enable).kind == Kind::nothing);
     CHECK(motor.command(enable) == MotorCommand::enable);

@@ -136,6 +136,20 @@ TEST_CASE("a Damiao motor's commands are not decoded as feedback") {
     CHECK(elbow().claims(0x014));
 }
 
+TEST_CASE("frames of other lengths are no commands of a Damiao motor's other modes") {
+    const auto of_length = [](std::uint32_t mode, int length) {
+        return elbow().command(make_frame(mode + 4, length));
+    };
+    for (int length = 0; length <= 8; ++length) { // such as the PDOs of a CANopen drive
+        CHECK((of_length(0x100, length) == MotorCommand::other_mode) == (length == 8));
+        CHECK((of_length(0x200, length) == MotorCommand::other_mode) == (length == 4 || length == 8));
+        CHECK((of_length(0x300, length) == MotorCommand::other_mode) == (length == 8));
+    }
+    CHECK(elbow().command(frame_of(0x7FF, {4, 0, 0xCC, 0, 0, 0, 0, 0})) == MotorCommand::poll);
+    CHECK(elbow().command(frame_of(0x7FF, {4, 0, 0x33, 21, 0, 0, 0, 0})) == MotorCommand::read);
+    CHECK(elbow().command(frame_of(0x7FF, {4, 0, 0x55, 21, 0, 0, 0, 0})) == MotorCommand::configure);
+}
+
 TEST_CASE("a Damiao motor that reports another scale than described rejects the values that depend on it") {
     DamiaoMotor motor = elbow();
     const Frame frame = feedback(4, 1, 5);

@@ -227,6 +227,18 @@ TEST_CASE("a torque command to a moteus has no stiffness and damping and request
     CHECK(device.command(flexible(0x8004, bytes_of("010000"))) == MotorCommand::none);
 }
 
+TEST_CASE("a reply to a host with the number of a moteus controller is no command to the controller") {
+    const MoteusController third({.id = 3, .joint = 0});
+    for (const char* const hex : {"2404000a005000000170ff230d181400", // the example of the documentation
+                                  "2F01000000000000003F00000000", "5021000A", "300104", "41010100"}) {
+        const Frame frame = flexible(0x0103, bytes_of(hex)); // of controller 1 to host 3
+        CHECK(third.command(frame) == MotorCommand::none);
+        CHECK_FALSE(third.decode_torque(frame));
+    }
+    CHECK(third.command(flexible(0x0103, bytes_of("1404001100"))) == MotorCommand::poll);
+    CHECK(third.command(flexible(0x8103, bytes_of("400100"))) == MotorCommand::poll); // data of a channel
+}
+
 TEST_CASE("a flipped bit in a moteus sub-frame's header gives no value of a wrong register") {
     constexpr double torque = 0.25;
     std::array<JointValue, 1> values{};

@@ -84,6 +84,99 @@ TEST_CASE("a V2 driver of an RMD motor answers on the identifier of the requests
     CHECK(turns.position_rad == Approx(-360 * degree).epsilon(1e-13));
 }
 
+TEST_CASE("a control answer of an RMD motor and the 0x9C after it give one effort") {
+    RmdMotor polled = motor();
+    Frame control = status_answer();
+    control.data[0] = 0xA1;
+    for (int period = 0; period < 3; ++period) { // 0xA1, 0x92 and 0x9C
+        CHECK_FALSE(polled.carries_no_values(control));
+        CHECK(polled.decode(control).joint[0].effort_reason == Reason::ok);
+        CHECK(polled.decode(frame_of(0x245, {0x92, 0, 0, 0, 1, 0, 0, 0})).kind == Kind::values);
+        CHECK(polled.carries_no_values(status_answer()));
+        CHECK(polled.decode(status_answer()).kind == Kind::nothing);
+    }
+    CHECK_FALSE(polled.carries_no_values(status_answer())); // no longer commanded
+    CHECK(polled.decode(status_answer()).joint[0].effort_reason == Reason::ok);
+    RmdMotor coarse = motor(RmdDriver::v3, RmdPosition::status);
+    CHECK(coarse.decode(control).joint[0].position_reason == Reason::ok);
+    CHECK(coarse.decode(status_answer()).kind == Kind::nothing);
+}
+
+TEST_CASE("a V2 driver's command with a direction gives no value and its answer does") {
+    RmdMotor old = motor(RmdDriver::v2);
+    for (const unsigned number : {0xA5U, 0xA6U}) {
+        const auto byte = static_cast<std::uint8_t>(number);
+        for (const std::uint8_t direction : {std::uint8_t{0}, std::uint8_t{1}}) {
+            const Frame command = frame_of(0x145, {byte, direction, 0x32, 0, 0x50, 0x46, 0, 0});
+            CHECK(old.decode(command).kind == Kind::nothing);
+            CHECK(old.carries_no_values(command));
+            CHECK(old.command(command) == MotorCommand::control);
+        }
+        const Frame answer = frame_of(0x145, {byte, 0x20, 0x64, 0, 0, 0, 0x50, 0x46});
+        CHECK(old.decode(answer).joint[0].effort == Approx(100 * 33.0 / 2048).epsilon(1e-13));
+        CHECK(old.command(answer) == MotorCommand::none);
+    }
+    const Frame cold = frame_of(0x145, {0xA1, 1, 0x64, 0, 0, 0, 0, 0}); // 1 °C; 0xA1 has no direction
+    CHECK(old.decode(cold).kind == Kind::values);
+}
+
+const Frame zero_angle = frame_of(0x145, {0x92, 0, 0, 0, 0, 0, 0, 0}); ///< its request and its answer
+const Frame status_request = frame_of(0x145, {0x9C, 0, 0, 0, 0, 0, 0, 0});
+const Frame standing = frame_of(0x145, {0x9C, 0x20, 0x33, 0, 0, 0, 0, 0}, 7); ///< speed 0
+
+/// Returns the value of the last of these frames to a V2 driver that has answered before.
+JointValue last_of(std::initializer_list<Frame> frames) {
+    RmdMotor old = motor(RmdDriver::v2);
+    old.decode(standing);
+    JointValue last;
+    for (const Frame& frame : frames) {
+        last = old.decode(frame).joint[0];
+    }
+    return last;
+}
+
+TEST_CASE("a V2 driver at rest at exactly 0 has a position if it answers") {
+    const JointValue value = last_of({zero_angle, zero_angle, status_request, standing});
+    CHECK(value.position_reason == Reason::ok);
+    CHECK(value.position_rad == 0);
+    CHECK(value.raw_zero);
+    CHECK(value.stamp_ns == 7);
+    CHECK(value.effort_reason == Reason::ok);
+    Frame control = standing;
+    control.data[0] = 0xA1;
+    CHECK(last_of({control, zero_angle, zero_angle, status_request, standing}).position_reason == Reason::ok);
+    const Frame errors = frame_of(0x145, {0x9A, 0x20, 0, 0, 0, 0, 0, 0}); // none
+    CHECK(last_of({zero_angle, zero_angle, errors, status_request, standing}).position_reason == Reason::ok);
+}
+
+TEST_CASE("requests of a V2 driver's angle alone are not a position of 0") {
+    const auto has_none = [](std::initializer_list<Frame> frames) {
+        return last_of(frames).position_reason == Reason::waiting_for_position;
+    };
+    Frame moving = standing;
+    moving.data[4] = 1;
+    const Frame elsewhere = frame_of(0x145, {0x92, 1, 0, 0, 0, 0, 0, 0});
+    CHECK(has_none({zero_angle, status_request, standing}));                         // a lost answer
+    CHECK(has_none({zero_angle, zero_angle, zero_angle, status_request, standing})); // two programs
+    CHECK(has_none({zero_angle, zero_angle, status_request, moving}));
+    CHECK(has_none({zero_angle, zero_angle, elsewhere, status_request, standing}));
+    CHECK(has_none({zero_angle, zero_angle, zero_angle, zero_angle})); // no motor
+}
+
+TEST_CASE("an answer of exactly 0 counts among the frames with values of a V2 driver that is heard") {
+    RmdMotor old = motor(RmdDriver::v2);
+    for (int i = 0; i < 4; ++i) { // not heard yet
+        CHECK(old.carries_no_values(zero_angle));
+        old.decode(zero_angle);
+    }
+    old.decode(standing);
+    CHECK(old.carries_no_values(zero_angle)); // the request
+    old.decode(zero_angle);
+    CHECK_FALSE(old.carries_no_values(zero_angle));
+    old.decode(zero_angle);
+    CHECK(old.carries_no_values(zero_angle));
+}
+
 TEST_CASE("an RMD motor's errors invalidate its values until it reports none twice") {
     RmdMotor faulty = motor();
     CHECK(faulty.decode(frame_of(0x245, {0x9A, 0x32, 0, 1, 0xE5, 0x01, 0x02, 0x00})).reason ==
@@ -135,6 +228,7 @@ TEST_CASE("a torque command to an RMD motor is a current") {
     CHECK(geared.command(command) == MotorCommand::control);
     CHECK(geared.command(frame_of(0x145, {0x9B, 0, 0, 0, 0, 0, 0, 0})) == MotorCommand::clear_faults);
     CHECK(geared.command(frame_of(0x145, {0x9C, 0, 0, 0, 0, 0, 0, 0})) == MotorCommand::poll);
+    CHECK(geared.command(frame_of(0x145, {0x9A, 0, 0, 0, 0, 0, 0, 0})) == MotorCommand::read);
     CHECK(geared.command(frame_of(0x146, {0xA1, 0, 0, 0, 0, 0, 0, 0})) == MotorCommand::none);
 }
 

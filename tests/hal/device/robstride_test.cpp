@@ -174,8 +174,30 @@ TEST_CASE("a torque command to a Robstride motor has the torque in the identifie
           MotorCommand::clear_faults);
     CHECK(wrist().command(private_frame(6, 0xFD, 0x7F, {1, 0, 0, 0, 0, 0, 0, 0})) == MotorCommand::set_zero);
     CHECK(wrist().command(private_frame(17, 0xFD, 0x7F, {0x19, 0x70, 0, 0, 0, 0, 0, 0})) ==
-          MotorCommand::poll);
+          MotorCommand::read);
     CHECK(wrist().command(private_frame(3, 0xFD, 0x7E, {0, 0, 0, 0, 0, 0, 0, 0})) == MotorCommand::none);
+}
+
+TEST_CASE("a Robstride motor's feedback has one stream identifier in all modes and with all faults") {
+    const std::uint32_t running = sound().id;
+    for (unsigned mode = 0; mode < 4; ++mode) {
+        for (const unsigned faults : {0x00U, 0x01U, 0x20U, 0x3FU}) {
+            CHECK(RobstrideMotor::stream_id(feedback(mode, faults, {0, 0, 0, 0, 0, 0, 0, 0})) == running);
+        }
+    }
+    const Frame other = private_frame(2, 2U << 14 | 0x7E, 0xFD, {0, 0, 0, 0, 0, 0, 0, 0});
+    CHECK(RobstrideMotor::stream_id(other) == other.id);
+    const Frame command = wrist().encode_torque(6);
+    CHECK(RobstrideMotor::stream_id(command) == command.id);
+}
+
+TEST_CASE("an answer of a Robstride motor to a host is attributed to the motor") {
+    // bits 15 to 8 are the motor; an answer to type 0 has the target 0xFE
+    CHECK(RobstrideMotor::answering_motor(private_frame(17, 0x7F, 0xFD, {0x19, 0x70})) == 0x7FU);
+    CHECK(RobstrideMotor::answering_motor(private_frame(0, 0x7F, 0xFE, {1, 2, 3, 4, 5, 6, 7, 8})) == 0x7FU);
+    CHECK(RobstrideMotor::answering_motor(sound()) == 0x7FU);
+    CHECK_FALSE(RobstrideMotor::answering_motor(private_frame(3, 0xFD, 0x7F, {})));
+    CHECK_FALSE(RobstrideMotor::answering_motor(wrist().encode_torque(6)));
 }
 
 TEST_CASE("a simulated Robstride motor's feedback is decoded to half a count") {

@@ -4,6 +4,7 @@
 #include "dfdyn/dfdyn.hpp"
 #include "dfdyn/hal/device/icub_strain.hpp"
 #include "dfdyn/hal/device/icub_two_joint_board.hpp"
+#include "dfdyn/hal/motion/encoder_reading.hpp"
 #include "dfdyn/hal/sample_assembly.hpp"
 #include "tests/firmware_lib/support/test_model.hpp"
 #include "tests/hal/support/frames.hpp"
@@ -53,8 +54,6 @@ inline hal::Wrench true_wrench(double time_s) {
     return {20 * std::sin(q[0]), 20 * std::cos(q[0]), 10 * q[1], 2 * q[0], 2 * std::sin(q[1]), q[0] - q[1]};
 }
 
-inline double seconds(std::int64_t time_ns) { return 1e-9 * static_cast<double>(time_ns); }
-
 constexpr hal::Wrench full_scales{1500, 1500, 2000, 35, 35, 25};
 
 /// An arm on a bus, the assembly that reads its frames, and an estimator that learns from the samples. Every
@@ -102,10 +101,10 @@ class ArmOnBus {
     /// it.
     std::vector<hal::Frame> frames_of(int k) {
         std::array<hal::JointValue, 2> joints{};
-        const std::array<double, 2> q = true_position(seconds(time_ns(k) + 100 * us));
+        const std::array<double, 2> q = true_position(hal::seconds_of(time_ns(k) + 100 * us));
         joints[0].position_rad = q[0];
         joints[1].position_rad = q[1];
-        hal::Wrench wrench = true_wrench(seconds(time_ns(k) + 200 * us));
+        hal::Wrench wrench = true_wrench(hal::seconds_of(time_ns(k) + 200 * us));
         std::uniform_real_distribution<double> noise(-2, 2); // steps of the converter
         for (std::size_t i = 0; i < 6; ++i) {
             wrench[i] += noise(*engine_) * full_scales[i] / 32768;
@@ -205,11 +204,11 @@ class ArmOnBus {
             CHECK_FALSE(tick.learned);
             return;
         }
-        const std::array<double, 2> q = true_position(seconds(sample.time_ns));
-        const hal::Wrench wrench = true_wrench(seconds(sample.time_ns));
+        const std::array<double, 2> q = true_position(hal::seconds_of(sample.time_ns));
+        const hal::Wrench wrench = true_wrench(hal::seconds_of(sample.time_ns));
         for (std::size_t i = 0; i < 2; ++i) {
-            const double off_s =
-                std::max(0.0, seconds(report.position_age_ns[i] - delay_ns)) + seconds(clock_error_ns);
+            const double off_s = std::max(0.0, hal::seconds_of(report.position_age_ns[i] - delay_ns)) +
+                                 hal::seconds_of(clock_error_ns);
             const double half_tick = 0.5 / 11.375 * std::numbers::pi / 180;
             CHECK(std::abs(sample.position[static_cast<int>(i)] - q[i]) <= 1.01 * half_tick + off_s);
         }
@@ -218,8 +217,8 @@ class ArmOnBus {
             return;
         }
         for (std::size_t i = 0; i < 6; ++i) {
-            const double off_s =
-                std::max(0.0, seconds(report.output_age_ns - delay_ns)) + seconds(clock_error_ns);
+            const double off_s = std::max(0.0, hal::seconds_of(report.output_age_ns - delay_ns)) +
+                                 hal::seconds_of(clock_error_ns);
             CHECK(std::abs(sample.output[static_cast<int>(i)] - wrench[i]) <=
                   3 * full_scales[i] / 32768 + 25 * off_s);
         }

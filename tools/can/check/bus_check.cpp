@@ -5,8 +5,6 @@
 #include "tools/can/arm/device_frames.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <set>
 
 namespace dfdyn::tools {
 
@@ -18,9 +16,13 @@ std::span<const hal::Frame> span_of(const hal::FrameList& list) {
 
 } // namespace
 
-BusCheck::BusCheck(std::optional<BusDescription> description) : description_(std::move(description)) {
+BusCheck::BusCheck(std::optional<BusDescription> description)
+    : description_(std::move(description)), load_(description_ ? description_->bit_rate : 0) {
     if (description_) {
         describe();
+        for (const auto& [key, stream] : streams_) {
+            load_.expect(stream.expected_bits);
+        }
     }
 }
 
@@ -46,9 +48,13 @@ void BusCheck::describe() {
         }
     }
     joints_.resize(zeros.size());
-    restarts_.resize(zeros.size());
-    position_keys_.resize(zeros.size());
-    for (const BusBoard& board : description_->boards) {
+    describe_joints();
+}
+
+void BusCheck::describe_joints() {
+    for (std::size_t i = 0; i < boards_.size(); ++i) {
+        const BusBoard& board = boards_[i];
+        heartbeat_timeout_ns_ = std::max(heartbeat_timeout_ns_, board.board->heartbeat_timeout_ns());
         for (const int joint : board.joint) {
             if (joint != hal::unused_joint) {
                 const hal::FrameList frames = board.board.encode({});
@@ -57,9 +63,11 @@ void BusCheck::describe() {
                 for (const hal::Frame& frame : span_of(frames)) {
                     streams_[{frame.extended, frame.id}].answers_sync = description_->synchronous;
                 }
-                position_keys_.at(static_cast<std::size_t>(joint)) = {position.extended, position.id};
                 const auto index = static_cast<std::size_t>(joint);
-                joints_.at(index) =
+                CheckedJoint& checked = joints_.at(index);
+                checked.position_key = {position.extended, position.id};
+                checked.board = i;
+                checked.values =
                     ValueWatch(board.board->encoder_turn_rad(), description_->joint_limits.at(index));
             }
         }
@@ -93,10 +101,10 @@ bool BusCheck::claimed(const hal::Frame& frame) const {
 
 /// Returns true if the frame has an identifier of a device's values, but is a request of the host or an
 /// answer without values.
-bool BusCheck::is_request(const hal::Frame& frame) const {
-    return description_ && ((description_->sensor && (*description_->sensor)->is_request(frame)) ||
+bool BusCheck::carries_no_values(const hal::Frame& frame) const {
+    return description_ && ((description_->sensor && (*description_->sensor)->carries_no_values(frame)) ||
                             std::ranges::any_of(boards_, [&](const BusBoard& board) {
-                                return board.board->is_aside(frame);
+                                return board.board->carries_no_values(frame);
                             }));
 }
 
@@ -141,9 +149,9 @@ void BusCheck::finish() {
 void BusCheck::take(const StreamClock::Timed& timed) {
     const hal::Frame& frame = timed.frame;
     const double bits = frame_bits(frame, description_ ? description_->data_rate_ratio() : 1);
-    bits_ += bits;
+    load_.count(bits);
     from_host_ += frame.origin == hal::Origin::this_host ? 1 : 0;
-    BusStream* const stream = is_request(frame) ? nullptr : stream_of(frame);
+    BusStream* const stream = carries_no_values(frame) ? nullptr : stream_of(frame);
     if (timed.stray) {
         if (stream != nullptr) {
             ++stream->strays;
@@ -152,10 +160,12 @@ void BusCheck::take(const StreamClock::Timed& timed) {
     }
     const bool overtaken = started_ && frame.stamp_ns < last_ns_;
     pass(frame.stamp_ns);
-    watch_load(stream, bits);
+    load_.watch(last_ns_ - first_ns_, bits, stream == nullptr || stream->known);
     if (stream != nullptr) {
         stream->take(frame, bits, overtaken);
-        watch_order(*stream, frame.stamp_ns);
+        if (stream->in_sequence()) {
+            order_.take(frame.stamp_ns);
+        }
         watch_answers(*stream, frame);
     }
     if (!arm_) {
@@ -170,36 +180,6 @@ void BusCheck::take(const StreamClock::Timed& timed) {
     assemble(last_ns_);
 }
 
-/// Finds the busiest windows of time. Each one begins in the middle of the one before.
-void BusCheck::watch_load(const BusStream* stream, double bits) {
-    constexpr std::int64_t half_ns = 100'000'000;
-    const std::int64_t half = (last_ns_ - first_ns_) / half_ns;
-    if (half != half_) {
-        half_before_ = half == half_ + 1 ? half_bits_ : Load{};
-        half_bits_ = {};
-        half_ = half;
-    }
-    half_bits_.load += bits;
-    half_bits_.unknown += stream != nullptr && !stream->known ? bits : 0;
-    const double possible_bits = 2 * bit_rate() * seconds_of(half_ns);
-    if (possible_bits > 0) {
-        peak_.load = std::max(peak_.load, (half_before_.load + half_bits_.load) / possible_bits);
-        peak_.unknown = std::max(peak_.unknown, (half_before_.unknown + half_bits_.unknown) / possible_bits);
-    }
-}
-
-void BusCheck::watch_order(const BusStream& stream, std::int64_t stamp_ns) {
-    constexpr std::int64_t once_ns = 10'000'000; // one step of the clock affects all sources within this time
-    if (!stream.in_sequence()) {
-        return;
-    }
-    if (stamp_ns < in_sequence_ns_ && stamp_ns - overtaken_ns_ > once_ns) {
-        ++overtaken_;
-        overtaken_ns_ = stamp_ns;
-    }
-    in_sequence_ns_ = std::max(in_sequence_ns_, stamp_ns);
-}
-
 void BusCheck::watch_answers(BusStream& stream, const hal::Frame& frame) {
     if (sync_key_ && *sync_key_ == BusStreamKey{frame.extended, frame.id}) {
         sync_ns_ = frame.stamp_ns;
@@ -208,58 +188,43 @@ void BusCheck::watch_answers(BusStream& stream, const hal::Frame& frame) {
     }
 }
 
-std::int64_t BusCheck::small_clock_step_ns() const {
-    constexpr double same_step = 0.2; // share of the period
-    std::vector<const BusStream*> regular;
-    std::set<std::string> senders;
-    for (const auto& [key, stream] : streams_) {
-        if (stream.expected_hz > 0 && !stream.several && stream.is_regular()) {
-            regular.push_back(&stream);
-            senders.insert(stream.sender);
-        }
-    }
-    if (senders.size() < 2) {
-        return 0;
-    }
-    std::int64_t largest_ns = 0;
-    for (const PhaseStep& step : regular.front()->phase_steps()) {
-        const bool all = std::ranges::all_of(regular, [&](const BusStream* stream) {
-            const double period_ns = 1e9 / stream->expected_hz;
-            return std::ranges::any_of(stream->phase_steps(), [&](const PhaseStep& other) {
-                const double apart_ns = std::abs(seconds_of(other.time_ns - step.time_ns)) * 1e9;
-                const double off_ns = std::remainder(other.step_ns - step.step_ns, period_ns);
-                return apart_ns < 3 * period_ns && std::abs(off_ns) < same_step * period_ns;
-            });
-        });
-        if (all && std::abs(step.step_ns) > std::abs(static_cast<double>(largest_ns))) {
-            largest_ns = std::llround(step.step_ns);
-        }
-    }
-    return largest_ns;
-}
-
 void BusCheck::watch_joints(const hal::Frame& frame) {
     for (BusBoard& board : boards_) {
         const hal::Decoded decoded = board.board.decode(frame);
         if (decoded.kind == hal::Decoded::Kind::status && decoded.reason == hal::Reason::device_restarted) {
-            ++restarts_.at(static_cast<std::size_t>(std::max(board.joint[0], 0)));
+            ++joints_.at(static_cast<std::size_t>(std::max(board.joint[0], 0))).restarts;
         }
         for (int i = 0; i < decoded.joints; ++i) {
             const hal::JointValue& value = decoded.joint.at(static_cast<std::size_t>(i));
             if (value.joint >= 0 && value.joint < static_cast<int>(joints_.size())) {
-                joints_[static_cast<std::size_t>(value.joint)].take(value);
+                CheckedJoint& joint = joints_[static_cast<std::size_t>(value.joint)];
+                joint.values.take(value);
+                joint.first_ns = joint.frames == 0 ? frame.stamp_ns : joint.first_ns;
+                ++joint.frames;
+                joint.last_ns = std::max(joint.last_ns, frame.stamp_ns);
             }
         }
     }
 }
 
+/// Returns the identifier under which the frame is counted. All boards are of one family.
+BusStreamKey BusCheck::key_of(const hal::Frame& frame) const {
+    const BusStreamKey own{frame.extended, frame.id};
+    return boards_.empty() || streams_.contains(own)
+               ? own
+               : BusStreamKey{frame.extended, boards_.front().board->stream_id(frame)};
+}
+
 /// Returns the stream of the frame's identifier; null if there is no room for another stream.
 BusStream* BusCheck::stream_of(const hal::Frame& frame) {
-    const BusStreamKey key{frame.extended, frame.id};
+    const BusStreamKey key = key_of(frame);
     const auto found = streams_.find(key);
-    const auto other = streams_.find({!frame.extended, frame.id});
+    const auto other = streams_.find({!key.first, key.second});
     const bool is_other_form = other != streams_.end() && other->second.is_described() &&
                                (found == streams_.end() || !found->second.is_described());
+    if (is_other_form && claimed(frame)) {
+        return &other->second; // the device sends both forms
+    }
     if (is_other_form) {
         other->second.take_other_form();
     }
@@ -284,32 +249,54 @@ void BusCheck::assemble(std::int64_t now_ns) {
     }
     next_sample_ns_ = now_ns + description_->sample_period_ns();
     const BusSample sample = arm_->assemble(now_ns, now_ns);
-    ++samples_;
-    last_position_ = sample.report.position;
-    last_output_ = sample.report.output;
-    ++refused_.at(static_cast<std::size_t>(last_position_));
-    if (last_output_ != last_position_) {
-        ++refused_.at(static_cast<std::size_t>(last_output_));
-    }
+    const bool early = now_ns - first_ns_ <= heartbeat_timeout_ns_; // the first heartbeat may not be due yet
+    const auto without_early_heartbeat = [early](hal::Reason reason) {
+        return early && reason == hal::Reason::heartbeat_missing ? hal::Reason::waiting_for_position : reason;
+    };
+    samples_.add(without_early_heartbeat(sample.report.position),
+                 without_early_heartbeat(sample.report.output));
 }
 
 const BusStreams::value_type* BusCheck::position_stream(std::size_t joint) const {
-    const auto found = streams_.find(position_keys_.at(joint));
+    const auto found = streams_.find(joints_.at(joint).position_key);
     return found == streams_.end() ? nullptr : &*found;
+}
+
+bool BusCheck::lacks_values(std::size_t joint) const {
+    constexpr double longest_silence = 10;        // periods of the fastest board, and own mean intervals
+    constexpr std::uint64_t to_know_its_rate = 5; // frames
+    const CheckedJoint& checked = joints_.at(joint);
+    const BusStreams::value_type* const source = position_stream(joint);
+    const bool shares = std::ranges::any_of(joints_, [&](const CheckedJoint& other) {
+        return other.board != checked.board && other.position_key == checked.position_key;
+    });
+    if (!shares || source == nullptr || source->second.count == 0) {
+        return false;
+    }
+    const BusStream& stream = source->second;
+    const std::int64_t heard_ns = checked.frames > 0 ? checked.last_ns : stream.first_ns;
+    double interval_s = 1 / description_->joints.rate_hz;
+    if (checked.frames >= to_know_its_rate) {
+        const double own_s =
+            seconds_of(checked.last_ns - checked.first_ns) / static_cast<double>(checked.frames - 1);
+        interval_s = std::max(interval_s, own_s);
+    }
+    return seconds_of(stream.last_ns - heard_ns) > longest_silence * interval_s;
+}
+
+bool BusCheck::lacks_a_sender(const BusStreamKey& key) const {
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+        if (joints_[joint].position_key == key && lacks_values(joint)) {
+            return true;
+        }
+    }
+    return false;
 }
 
 std::uint64_t BusCheck::device_losses() const noexcept {
     const std::uint64_t own = counters_.dropped + counters_.controller_overruns;
     const std::uint64_t all = arm_ ? arm_->bus().health.losses() : 0;
     return all > own ? all - own : 0;
-}
-
-std::uint64_t BusCheck::refused(hal::Reason reason) const {
-    return refused_.at(static_cast<std::size_t>(reason));
-}
-
-bool BusCheck::still(hal::Reason reason) const {
-    return samples_ > 0 && (last_position_ == reason || last_output_ == reason);
 }
 
 double BusCheck::age_s(const BusStream& stream) const { return seconds_of(last_ns_ - stream.last_ns); }
@@ -324,17 +311,5 @@ bool BusCheck::dropped_all_missing() const {
 }
 
 double BusCheck::duration_s() const { return seconds_of(last_ns_ - first_ns_); }
-
-double BusCheck::load() const {
-    return duration_s() > 0 && bit_rate() > 0 ? bits_ / duration_s() / bit_rate() : 0;
-}
-
-double BusCheck::expected_load() const {
-    double bits_per_s = 0;
-    for (const auto& [key, stream] : streams_) {
-        bits_per_s += stream.expected_bits;
-    }
-    return bit_rate() > 0 ? bits_per_s / bit_rate() : 0;
-}
 
 } // namespace dfdyn::tools

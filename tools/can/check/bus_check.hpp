@@ -2,14 +2,18 @@
 #pragma once
 
 #include "tools/can/arm/bus_arm.hpp"
+#include "tools/can/check/bus_load.hpp"
 #include "tools/can/check/bus_stream.hpp"
+#include "tools/can/check/sample_counts.hpp"
+#include "tools/can/check/sequence_watch.hpp"
 #include "tools/can/check/stream_clock.hpp"
 #include "tools/can/check/value_watch.hpp"
 #include "tools/can/description/bus_finding.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <ostream>
@@ -18,6 +22,17 @@
 #include <vector>
 
 namespace dfdyn::tools {
+
+/// A joint of the description, as its device reports it.
+struct CheckedJoint {
+    ValueWatch values;
+    std::uint64_t restarts = 0; ///< times that its device reported a restart between its values
+    BusStreamKey position_key;  ///< identifier of its positions
+    std::size_t board = 0;      ///< its board
+    std::uint64_t frames = 0;   ///< frames with its values
+    std::int64_t first_ns = 0;  ///< stamp of the first one
+    std::int64_t last_ns = 0;   ///< stamp of the last one
+};
 
 /// Observes a bus and checks the rate of each sender, and whether the frames agree with the description.
 /// Without a description it checks how regularly each identifier is sent. It sends nothing. Jumps of the
@@ -47,7 +62,6 @@ class BusCheck {
 
     /// The description; null if there is none.
     const BusDescription* description() const noexcept { return description_ ? &*description_ : nullptr; }
-    double bit_rate() const noexcept { return description_ ? description_->bit_rate : 0; } ///< 0: unknown
     const BusStreams& streams() const noexcept { return streams_; }
     const hal::BusCounters& counters() const noexcept { return counters_; }
     hal::BusState state() const noexcept { return state_; }
@@ -61,31 +75,19 @@ class BusCheck {
     double age_s(const BusStream& stream) const; ///< age of the last frame at the end of the observation
     /// Returns true if frames dropped by this computer explain all missing frames.
     bool dropped_all_missing() const;
-    double load() const; ///< share of the bit rate used by the frames, with worst-case bit stuffing
-    /// fraction of the bit rate that the described sources would use; 0 if the bit rate is unknown, like the
-    /// other two
-    double expected_load() const;
-    /// Largest load in 0.2 s, and largest load of undescribed identifiers in 0.2 s.
-    double peak_load() const { return peak_.load; }
-    double peak_unknown_load() const { return peak_.unknown; }
-    /// Number of frames read after one with a later time stamp, although both came in their sequence.
-    std::uint64_t overtaken() const noexcept { return overtaken_; }
-    /// Largest clock step below the sources' periods: all regular sources changed their phase by it at the
-    /// same time. 0: none.
-    std::int64_t small_clock_step_ns() const;
+    const BusLoad& load() const noexcept { return load_; }
+    const ReadingOrder& order() const noexcept { return order_; }
+    /// The samples of the described arm, assembled at the sample rate.
+    const SampleCounts& samples() const noexcept { return samples_; }
 
-    /// Number of assembled samples, and how many of them had a reason for their positions or their output.
-    std::uint64_t samples() const noexcept { return samples_; }
-    std::uint64_t refused(hal::Reason reason) const;
-    /// Returns true if the last sample had this reason.
-    bool still(hal::Reason reason) const;
-
-    /// One watch per joint of the description.
-    const std::vector<ValueWatch>& joints() const noexcept { return joints_; }
-    /// Number of times that the joint's device reported a restart between its values.
-    std::uint64_t restarts(std::size_t joint) const { return restarts_.at(joint); }
+    /// The joints of the description.
+    const std::vector<CheckedJoint>& joints() const noexcept { return joints_; }
     /// The stream with the joint's positions; null if there is none.
     const BusStreams::value_type* position_stream(std::size_t joint) const;
+    /// Returns true if a joint that shares an identifier sent no values in its last ten periods.
+    bool lacks_values(std::size_t joint) const;
+    /// Returns true if this holds for a joint with this identifier, whose rate is then not the described one.
+    bool lacks_a_sender(const BusStreamKey& key) const;
     /// The boards after all frames; empty without a description.
     const std::vector<BusBoard>& boards() const noexcept { return boards_; }
     /// The sensor after all frames; null without one.
@@ -97,54 +99,36 @@ class BusCheck {
     void take(const StreamClock::Timed& timed);
     void pass(std::int64_t time_ns);
     void describe();
+    void describe_joints();
     void expect(std::span<const hal::Frame> frames, double rate_hz);
     void name_sender(std::span<const hal::Frame> frames, const std::string& name);
     bool claimed(const hal::Frame& frame) const;
-    bool is_request(const hal::Frame& frame) const;
+    bool carries_no_values(const hal::Frame& frame) const;
     void watch_joints(const hal::Frame& frame);
+    BusStreamKey key_of(const hal::Frame& frame) const;
     BusStream* stream_of(const hal::Frame& frame);
-    void watch_load(const BusStream* stream, double bits);
-    void watch_order(const BusStream& stream, std::int64_t stamp_ns);
     void watch_answers(BusStream& stream, const hal::Frame& frame);
     void assemble(std::int64_t now_ns);
 
     std::optional<BusDescription> description_;
     std::optional<BusArm> arm_; ///< none without a description
     std::vector<BusBoard> boards_;
-    std::vector<ValueWatch> joints_;
-    std::vector<std::uint64_t> restarts_;
-    std::vector<BusStreamKey> position_keys_; ///< one per joint
+    std::vector<CheckedJoint> joints_;
     StreamClock clock_;
     BusStreams streams_;
     hal::BusCounters counters_;
     hal::BusState state_ = hal::BusState::active, worst_ = hal::BusState::active;
     std::int64_t first_ns_ = 0, last_ns_ = 0;
     std::int64_t next_sample_ns_ = std::numeric_limits<std::int64_t>::min();
-    double bits_ = 0;
-    struct Load {
-        double load = 0, unknown = 0;
-    };
-    Load peak_; ///< of all windows
-    /// Bits of the current half window, and of the one before.
-    Load half_bits_, half_before_;
-    std::int64_t half_ = -1; ///< number of the current half window
-    std::int64_t in_sequence_ns_ = std::numeric_limits<std::int64_t>::min();
-    std::int64_t overtaken_ns_ = 0; ///< stamp of the last overtaken frame that was counted
-    std::uint64_t overtaken_ = 0;
+    BusLoad load_;
+    ReadingOrder order_;
+    SampleCounts samples_;
+    std::int64_t heartbeat_timeout_ns_ = 0; ///< the longest of all boards
     std::optional<BusStreamKey> sync_key_;
     std::int64_t sync_ns_ = 0; ///< stamp of the last SYNC; 0: none
     std::uint64_t from_host_ = 0;
     bool started_ = false;
-    std::uint64_t samples_ = 0;
-    std::array<std::uint64_t, hal::reason_count> refused_{};
-    hal::Reason last_position_ = hal::Reason::ok, last_output_ = hal::Reason::ok;
 };
-
-/// Returns true if the reading order of frames often differs from the order of their stamps.
-inline bool is_overtaken(const BusCheck& check) {
-    constexpr std::uint64_t least_times = 3;
-    return check.overtaken() >= least_times;
-}
 
 /// Findings about the bus, then about each source, then about what the devices report.
 std::vector<BusFinding> bus_findings(const BusCheck& check);

@@ -33,9 +33,10 @@ std::string text(const char* format, Values... values) {
     return line.data();
 }
 
-double share(const BusCheck& check, double bits) {
-    const double possible_bits = check.duration_s() * check.bit_rate();
-    return possible_bits > 0 ? 100 * bits / possible_bits : 0;
+/// Returns the share of the bit rate in percent; `-` if the bit rate is not described.
+std::string load_share(const BusCheck& check, double bits) {
+    const double possible_bits = check.duration_s() * check.load().bit_rate();
+    return possible_bits > 0 ? text("%.1f", 100 * bits / possible_bits) : "-";
 }
 
 std::string sender_of(const BusCheck& check, const BusStream& stream) {
@@ -44,18 +45,20 @@ std::string sender_of(const BusCheck& check, const BusStream& stream) {
 
 void print_source(std::ostream& out, const BusCheck& check, const BusStreamKey& key,
                   const BusStream& stream) {
-    out << text("%-10s %9llu %9.1f %9.1f %9.3f %9.3f %9.1f %6.2f %6.1f  ", id_text(key).c_str(),
+    out << text("%-10s %9llu %9.1f %9.1f %9.3f %9.3f %9.1f %6.2f %6s  ", id_text(key).c_str(),
                 static_cast<unsigned long long>(stream.count), stream.rate_hz(), stream.expected_hz,
                 1e3 * stream.jitter_s(), 1e-6 * static_cast<double>(stream.longest_gap_ns),
                 stream.count > 0 ? 1e3 * check.age_s(stream) : 0.0, 100 * stream.missing_share(),
-                share(check, stream.bits))
+                load_share(check, stream.bits).c_str())
         << sender_of(check, stream) << '\n'; // may name many joints
 }
 
 std::string load_text(const BusCheck& check) {
-    return check.bit_rate() > 0 ? text("load at most %.1f %% of %.0f bit/s, as described %.1f %%",
-                                       100 * check.load(), check.bit_rate(), 100 * check.expected_load())
-                                : "the load is not known without --bus";
+    const BusLoad& load = check.load();
+    return load.bit_rate() > 0
+               ? text("load at most %.1f %% of %.0f bit/s, as described %.1f %%",
+                      100 * load.mean(check.duration_s()), load.bit_rate(), 100 * load.expected())
+               : "the load is not known without --bus";
 }
 
 void print_bus(std::ostream& out, const BusCheck& check) {
@@ -103,10 +106,10 @@ nlohmann::ordered_json bus_json(const BusCheck& check) {
                                 {"bus_off", counters.bus_off},
                                 {"restarted", counters.restarted},
                                 {"from_host", check.from_host()}};
-    if (check.bit_rate() > 0) {
-        json["bit_rate"] = check.bit_rate();
-        json["load"] = check.load();
-        json["expected_load"] = check.expected_load();
+    if (const BusLoad& load = check.load(); load.bit_rate() > 0) {
+        json["bit_rate"] = load.bit_rate();
+        json["load"] = load.mean(check.duration_s());
+        json["expected_load"] = load.expected();
     }
     return json;
 }
@@ -145,7 +148,7 @@ void print_bus_check(std::ostream& out, const BusCheck& check, std::span<const B
             << "\n  to confirm:    " << finding.confirm << "\n  to fix:        " << finding.fix << '\n';
     }
     if (findings.empty()) {
-        out << "nothing is wrong\n";
+        out << "no fault found\n";
     }
 }
 

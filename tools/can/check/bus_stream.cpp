@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
+#include <set>
 
 namespace dfdyn::tools {
 
@@ -13,6 +15,7 @@ namespace {
 constexpr std::size_t intervals_to_infer = 32;
 /// share of the period: intervals that differ by less are considered equal
 constexpr double same_period = 0.3;
+constexpr double same_mean = 0.05;    ///< relative: between the period and the mean interval
 constexpr double phase_gain = 0.125;  ///< gain of the phase-locked loop
 constexpr double steady_share = 0.75; ///< fraction of the first intervals
 constexpr double recent_share = 0.02; ///< weight of a frame in the recent average
@@ -58,7 +61,9 @@ void BusStream::take_interval(std::int64_t interval_ns, bool is_overtaken) {
     }
 }
 
-/// Infers the period as the mean of the intervals close to the median, if most intervals are.
+/// Infers the period as the mean of the intervals close to the median, if most intervals are. Several devices
+/// that answer on one identifier send bursts, whose intervals are shorter than the mean. The next intervals
+/// are then tried, because losses or a pause may have made the difference.
 void BusStream::infer_period() {
     std::vector<std::int64_t> sorted = first_intervals_;
     std::ranges::sort(sorted);
@@ -71,7 +76,13 @@ void BusStream::infer_period() {
             ++close;
         }
     }
-    const bool steady = median_ns > 0 && close >= steady_share * static_cast<double>(sorted.size());
+    const auto intervals = static_cast<double>(sorted.size());
+    const double mean_ns = std::accumulate(sorted.begin(), sorted.end(), 0.0) / intervals;
+    const bool steady = median_ns > 0 && close >= steady_share * intervals;
+    if (steady && std::abs(close * mean_ns / sum_ns - 1) > same_mean) {
+        first_intervals_.clear();
+        return;
+    }
     expected_hz = steady ? 1e9 * close / sum_ns : 0;
 }
 
@@ -156,7 +167,6 @@ double BusStream::missing_share() const {
 }
 
 bool BusStream::is_regular() const {
-    constexpr double same_mean = 0.05;
     const double mean = regular_ > 0 ? regular_periods_ / static_cast<double>(regular_) : 0;
     return 2 * regular_ >= followed_ && std::abs(mean - 1) < same_mean;
 }
@@ -165,6 +175,36 @@ std::string id_text(const BusStreamKey& key) {
     std::array<char, 16> text{};
     std::snprintf(text.data(), text.size(), key.first ? "0x%08X" : "0x%03X", key.second);
     return text.data();
+}
+
+std::int64_t common_phase_step_ns(const BusStreams& streams) {
+    constexpr double same_step = 0.2; // share of the period
+    std::vector<const BusStream*> regular;
+    std::set<std::string> senders;
+    for (const auto& [key, stream] : streams) {
+        if (stream.expected_hz > 0 && !stream.several && stream.is_regular()) {
+            regular.push_back(&stream);
+            senders.insert(stream.sender);
+        }
+    }
+    if (senders.size() < 2) {
+        return 0;
+    }
+    std::int64_t largest_ns = 0;
+    for (const PhaseStep& step : regular.front()->phase_steps()) {
+        const bool all = std::ranges::all_of(regular, [&](const BusStream* stream) {
+            const double period_ns = 1e9 / stream->expected_hz;
+            return std::ranges::any_of(stream->phase_steps(), [&](const PhaseStep& other) {
+                const double apart_ns = std::abs(seconds_of(other.time_ns - step.time_ns)) * 1e9;
+                const double off_ns = std::remainder(other.step_ns - step.step_ns, period_ns);
+                return apart_ns < 3 * period_ns && std::abs(off_ns) < same_step * period_ns;
+            });
+        });
+        if (all && std::abs(step.step_ns) > std::abs(static_cast<double>(largest_ns))) {
+            largest_ns = std::llround(step.step_ns);
+        }
+    }
+    return largest_ns;
 }
 
 } // namespace dfdyn::tools

@@ -3,6 +3,7 @@
 
 #include "dfdyn/hal/frame.hpp"
 #include "dfdyn/hal/gate/backlog.hpp"
+#include "dfdyn/hal/motion/encoder_reading.hpp"
 #include "tools/can/check/sequence_watch.hpp"
 
 #include <cstdint>
@@ -14,14 +15,14 @@
 
 namespace dfdyn::tools {
 
-constexpr double seconds_of(std::int64_t ns) noexcept { return 1e-9 * static_cast<double>(ns); }
+using hal::seconds_of;
 
 /// Statistics of the frames with one identifier: their number, regularity, and missing frames of a regular
 /// sequence.
 ///
 /// Missing frames are counted by the phase of the sequence, which a phase-locked loop follows. An early frame
 /// after a late one is therefore not a loss, and a sender whose clock deviates by 1 % loses nothing. With
-/// `infers` the period is taken from the first frames if they are regular.
+/// `infers` the period is taken from the first frames if they are regular and come without bursts.
 class BusStream {
   public:
     std::uint64_t count = 0;
@@ -90,7 +91,7 @@ class BusStream {
     bool waited(std::int64_t stamp_ns, double period_ns);
 
     double interval_square_sum_s2_ = 0;
-    /// first intervals until the period is inferred; at most a few
+    /// intervals until the period is inferred; at most a few
     std::vector<std::int64_t> first_intervals_;
     double next_ns_ = 0;       ///< expected time of the next frame in the sequence, relative to `last_ns`
     std::int64_t missing_ = 0; ///< minus the frames that arrived in addition to the sequence
@@ -113,5 +114,9 @@ class BusStream {
 using BusStreamKey = std::pair<bool, std::uint32_t>;
 using BusStreams = std::map<BusStreamKey, BusStream>;
 std::string id_text(const BusStreamKey& key);
+
+/// Returns the largest clock step (ns) below the sources' periods: all regular sources changed their phase by
+/// it at the same time. 0: none.
+std::int64_t common_phase_step_ns(const BusStreams& streams);
 
 } // namespace dfdyn::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/check/sequence_watch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -55,6 +56,20 @@ void SyncAnswers::take(std::int64_t after_ns, double period_ns) {
     const bool off = std::abs(std::remainder(now_ns - usual_ns_, period_ns)) > late_answer * period_ns;
     run_ = off ? run_ + 1 : 0;
     late_ += run_ == late_in_a_row ? run_ : run_ > late_in_a_row ? 1 : 0;
+}
+
+void ReadingOrder::take(std::int64_t stamp_ns) noexcept {
+    constexpr std::int64_t once_ns = 10'000'000; // one step of the clock affects all sources within this time
+    if (stamp_ns < latest_ns_ && stamp_ns - overtaken_ns_ > once_ns) {
+        ++overtaken_;
+        overtaken_ns_ = stamp_ns;
+    }
+    latest_ns_ = std::max(latest_ns_, stamp_ns);
+}
+
+bool ReadingOrder::differs() const noexcept {
+    constexpr std::uint64_t least_times = 3;
+    return overtaken_ >= least_times;
 }
 
 } // namespace dfdyn::tools

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -47,6 +48,23 @@ class SyncAnswers {
     double cosine_sum_ = 0, sine_sum_ = 0; ///< over their phases
     int learned_ = 0;
     std::uint64_t run_ = 0, late_ = 0;
+};
+
+/// Compares the order in which the frames of a bus are read with the order of their time stamps.
+class ReadingOrder {
+  public:
+    /// Takes the next frame that came at its place in the sequence of its source.
+    void take(std::int64_t stamp_ns) noexcept;
+
+    /// Number of frames read after one with a later time stamp; several within 10 ms count once.
+    std::uint64_t overtaken() const noexcept { return overtaken_; }
+    /// Returns true if the orders often differ.
+    bool differs() const noexcept;
+
+  private:
+    std::int64_t latest_ns_ = std::numeric_limits<std::int64_t>::min();
+    std::int64_t overtaken_ns_ = 0; ///< stamp of the last overtaken frame that was counted
+    std::uint64_t overtaken_ = 0;
 };
 
 } // namespace dfdyn::tools

@@ -17,6 +17,7 @@ constexpr double rate_of_two = 1.5;    ///< ratio to the expected rate
 constexpr double largest_gap = 3;      ///< periods
 constexpr double largest_jitter = 0.4; ///< share of the period
 constexpr double silent_periods = 10;  ///< periods before the end
+constexpr double silent_s = 0.5;       ///< before the end, for a source that nobody described
 constexpr double enough_frames = 20;
 /// share of the period: typical jitter of two senders with one identifier
 constexpr double jitter_of_two = 0.25;
@@ -52,11 +53,14 @@ struct Source {
     double jitter_periods() const { return periods(stream.jitter_s()); }
     bool silent() const { return stream.expected_hz > 0 && stream.count == 0; }
     bool stopped() const {
-        return stream.expected_hz > 0 && stream.count > 0 && periods(check.age_s(stream)) > silent_periods;
+        const double age_s = check.age_s(stream);
+        return stream.expected_hz > 0 && stream.count > 0 && periods(age_s) > silent_periods &&
+               (!stream.infers || age_s > silent_s);
     }
     /// Returns true if the source is active and has sent enough frames to be judged.
     bool runs() const {
-        return stream.expected_hz > 0 && static_cast<double>(stream.count) > enough_frames && !stopped();
+        return stream.expected_hz > 0 && static_cast<double>(stream.count) > enough_frames && !stopped() &&
+               !check.lacks_a_sender(key);
     }
     bool is_described() const { return runs() && !stream.infers; }
     /// Returns true if the number of frames is not an exception.
@@ -82,9 +86,9 @@ struct Source {
     }
     bool answers_late() const { return is_described() && many(stream.answers.late()); }
     bool is_late() const {
-        return !answers_late() && check.expected_load() <= largest_load_in_time &&
-               check.small_clock_step_ns() == 0 && is_described() && keeps_rate() && !stream.several &&
-               stream.is_regular() && !collides() && !duplicated() && !jitters() &&
+        return !answers_late() && check.load().expected() <= largest_load_in_time &&
+               common_phase_step_ns(check.streams()) == 0 && is_described() && keeps_rate() &&
+               !stream.several && stream.is_regular() && !collides() && !duplicated() && !jitters() &&
                many(stream.off_sequence());
     }
     /// With several messages on one identifier, one pause loses twice as many. Frames with a wrong stamp are
@@ -146,71 +150,76 @@ constexpr std::array<Rule, 13> rules{{
                 std::to_string(stream.length) + " bytes, the expected properties of this one";
      },
      "move the joint, or load the sensor, by hand: the bytes of those frames change (candump -c IFACE)",
-     "correct the address in the description, or in the device"},
+     "Correct the address in the description, or in the device."},
     {"silent_source", "is never sent",
      [](const Source& s) { return s.silent() && s.stream.other_forms() == 0 && impostor(s) == nullptr; },
      [](const Source& s) { return formatted("no frame in %.3g s", s.check.duration_s()); },
      "candump -n 1 IFACE,ID:MASK waits for one frame of it",
-     "check the device's power and cable; start its transmission; check its address in the description"},
+     "Check the device's power and cable. Start its transmission. Check its address in the description."},
     {"source_stopped", "is no longer sent", [](const Source& s) { return s.stopped(); },
      [](const Source& s) {
          return formatted("last frame %.3g s before the end", s.check.age_s(s.stream)) +
                 formatted(", %.4g frames/s before", s.stream.rate_hz());
      },
      "candump -n 1 IFACE,ID:MASK waits for one frame of it",
-     "check the device's power and cable; a missing node causes no bus error"},
+     "Check the device's power and cable: a missing node causes no bus error."},
     {"id_collision", "is sent too often: two devices may share the identifier",
      [](const Source& s) { return s.collides(); }, rates,
      "unplug the device: remaining frames come from another one",
-     "give one of the two another identifier; or correct rate_hz in the description"},
+     "Give one of the two another identifier, or correct rate_hz in the description."},
     {"duplicated_frames", "is sometimes received twice", [](const Source& s) { return s.duplicated(); },
      [](const Source& s) {
          return std::to_string(s.stream.additional()) + " frames more than the sequence has; " +
                 std::to_string(s.stream.copies) + " repeat the one before";
      },
-     "a second computer on the bus: if it receives them once, this one's adapter or gateway repeats them",
-     "the gateway's or adapter's routing: no frame may come back to its bus"},
+     "connect a second computer to the bus: if it receives them once, this one's adapter or gateway repeats "
+     "them",
+     "Check the routing of gateway and adapter: no frame may come back to its bus."},
     {"fast_source", "is sent more often than described",
      [](const Source& s) {
          return s.is_described() && s.ratio() > largest_rate && !s.collides() && !s.duplicated();
      },
-     rates, "read the period from the device", "correct rate_hz in the description, or the device's period"},
+     rates, "read the period from the device", "Correct rate_hz in the description, or the device's period."},
     {"slow_source", "is sent too rarely", [](const Source& s) { return s.slow(); },
      [](const Source& s) {
          return rates(s) +
                 formatted("; longest pause %.3g ms", 1e-6 * static_cast<double>(s.stream.longest_gap_ns));
      },
-     "even intervals (candump -t d IFACE,ID:MASK) mean a slow device",
-     "set the device's period, or rate_hz in the description"},
+     "candump -t d IFACE,ID:MASK: even intervals mean a slow device",
+     "Set the device's period, or rate_hz in the description."},
     {"lost_frames", "loses frames", [](const Source& s) { return s.loses(); },
      [](const Source& s) {
          return percent(s.stream.missing_share()) + ": " + std::to_string(s.stream.missing()) + " of " +
                 std::to_string(s.stream.missing() + s.stream.count) +
                 " frames are missing in a sequence of " + formatted("%.4g frames/s", s.stream.expected_hz);
      },
-     "a second computer on the bus: if it receives the frames, this one loses them",
-     "lower the load, read at a real-time priority; check cable and connectors, and the device's own errors"},
+     "connect a second computer to the bus: if it receives the frames, this one loses them",
+     "Lower the load of the bus. Read at a real-time priority. Check cable, connectors and the device's own "
+     "errors."},
     {"gaps", "has gaps", [](const Source& s) { return s.has_gaps(); },
      [](const Source& s) {
          return formatted("%.3g ms without a frame", 1e-6 * static_cast<double>(s.stream.longest_gap_ns)) +
                 formatted(", expected every %.3g ms", 1e3 / s.stream.expected_hz);
      },
      "ip -details -statistics link show IFACE: dropped and overrun frames are this computer's losses",
-     "read at a real-time priority, lower the load; or find a loose cable or a device that restarts"},
+     "Read at a real-time priority. Lower the load of the bus. Look for a loose cable or a device that "
+     "restarts."},
     {"jitter", "has irregular intervals", [](const Source& s) { return s.jitters(); },
      [](const Source& s) {
          return formatted("standard deviation of the intervals %.3g ms", 1e3 * s.stream.jitter_s()) +
                 formatted(", period %.3g ms", 1e3 / s.stream.expected_hz);
      },
      "record on another computer: if it is regular there, this one's stamps are late",
-     "a lower identifier, a lower load, or drives that measure at SYNC; or trigger on timer"},
+     "Give the source a lower identifier. Lower the load of the bus. Use drives that measure at SYNC, or "
+     "trigger on timer."},
     {"late_frames", "has late frames", [](const Source& s) { return s.is_late(); },
      [](const Source& s) {
          return std::to_string(s.stream.off_sequence()) + " of " + std::to_string(s.stream.count) +
                 formatted(" frames are more than 40 %% of %.3g ms off", 1e3 / s.stream.expected_hz);
      },
      "record on another computer: if the frames are in time there, this one's stamps are late",
-     "lower the load; a lower identifier; a gateway or program that does not delay frames"},
+     "Lower the load of the bus. Give the source a lower identifier. Check that no gateway or program delays "
+     "its frames."},
     {"late_answers", "answers a SYNC at unusual times, perhaps after the next one",
      [](const Source& s) { return s.answers_late(); },
      [](const Source& s) {
@@ -218,14 +227,14 @@ constexpr std::array<Rule, 13> rules{{
                 formatted(" answers are more than a quarter of %.3g ms off", 1e3 / s.stream.expected_hz);
      },
      "candump -t d IFACE: the time from 080 to the answer",
-     "a longer SYNC period, or a lower load, so that all answers come before the next SYNC"},
+     "Use a longer SYNC period, or lower the load, so that all answers come before the next SYNC."},
     {"rejected_frames", "has frames of a wrong length or type",
      [](const Source& s) { return s.stream.rejected + s.stream.other_forms() > 0; },
      [](const Source& s) {
          return std::to_string(s.stream.rejected + s.stream.other_forms()) + " of " +
                 std::to_string(s.stream.count + s.stream.other_forms()) + " have a different length or type";
      },
-     "candump IFACE,ID:MASK shows their length", "correct the device's mapping, or the description's"},
+     "candump IFACE,ID:MASK shows their length", "Correct the device's mapping, or the description's."},
 }};
 
 std::string with_id(std::string text, const BusStreamKey& key) {

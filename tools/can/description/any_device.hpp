@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -36,10 +37,16 @@ class Board {
     virtual double encoder_turn_rad() const { return 2 * std::numbers::pi; }
     /// Status frame that the device sends by itself; none for most families.
     virtual std::optional<hal::Frame> heartbeat() const { return std::nullopt; }
+    /// Time after which its values require another heartbeat; 0: none is required.
+    virtual std::int64_t heartbeat_timeout_ns() const { return 0; }
+    /// Identifier under which its frames are counted: that of the frame, without bits that change from frame
+    /// to frame.
+    virtual std::uint32_t stream_id(const hal::Frame& frame) const noexcept { return frame.id; }
     /// Findings from all decoded frames together.
     virtual std::vector<BusFinding> findings() const { return {}; }
-    /// True for a frame with an identifier of its values, but without values and not at their rate.
-    virtual bool is_aside(const hal::Frame& /*frame*/) const { return false; }
+    /// True for a frame on an identifier of its values that carries none: a request of the host, or another
+    /// answer. It does not come at the rate of the values.
+    virtual bool carries_no_values(const hal::Frame& /*frame*/) const { return false; }
     /// Commands of other programs to its motor, as `12 control, 3 poll`; empty: none.
     virtual std::string host_summary() const { return {}; }
 
@@ -83,8 +90,8 @@ class Sensor {
     virtual std::optional<hal::Frame> answer(const hal::Frame& /*request*/) const { return std::nullopt; }
     /// The replies to all requests.
     virtual std::vector<hal::Frame> answers() const { return {}; }
-    /// True if a frame on one of its identifiers is a request of the host.
-    virtual bool is_request(const hal::Frame& /*frame*/) const { return false; }
+    /// True for a frame on an identifier of its values that carries none: a request of the host.
+    virtual bool carries_no_values(const hal::Frame& /*frame*/) const { return false; }
     /// Findings about the sensor that no sample shows.
     virtual std::vector<BusFinding> findings() const { return {}; }
 
@@ -105,6 +112,20 @@ class BoardOf : public Board {
     hal::Decoded decode(const hal::Frame& frame) noexcept override { return codec_.decode(frame); }
     bool claims(std::uint32_t id) const noexcept final { return codec_.claims(id); }
     bool concerns(const hal::Frame& frame) const noexcept final { return hal::concerns(codec_, frame); }
+    std::int64_t heartbeat_timeout_ns() const final {
+        if constexpr (requires { codec_.config().heartbeat_timeout_ns; }) {
+            return codec_.config().heartbeat_timeout_ns;
+        } else {
+            return 0;
+        }
+    }
+    std::uint32_t stream_id(const hal::Frame& frame) const noexcept final {
+        if constexpr (requires { Codec::stream_id(frame); }) {
+            return Codec::stream_id(frame);
+        } else {
+            return frame.id;
+        }
+    }
     hal::FrameList encode(const std::array<hal::JointValue, 2>& values) const noexcept final {
         std::array<hal::JointValue, static_cast<std::size_t>(Codec::joints)> own;
         std::copy_n(values.begin(), own.size(), own.begin());

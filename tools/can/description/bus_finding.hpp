@@ -11,7 +11,7 @@ struct BusFinding {
     std::string what;
     std::string evidence; ///< observation from which the fault was inferred
     std::string confirm;  ///< a check that would confirm it
-    std::string fix;
+    std::string fix;      ///< steps of the remedy, one short imperative sentence each
 };
 
 } // namespace dfdyn::tools

@@ -11,7 +11,7 @@ class AtiNetcan final : public SensorOf<AtiNetcan, hal::AtiNetcan> {
   public:
     using SensorOf::SensorOf;
     hal::Reason calibration() const override { return codec().calibration(); }
-    bool is_request(const hal::Frame& frame) const override {
+    bool carries_no_values(const hal::Frame& frame) const override {
         return hal::has_id(frame, codec().poll().id) && frame.length == 0;
     }
 };

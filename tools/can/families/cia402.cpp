@@ -94,36 +94,58 @@ void read_drives(const JsonReader& joints, const std::filesystem::path& /*folder
         joints, [&](const JsonReader& board) { return read_drive(board, config); }, description);
 }
 
-/// Identifiers of the TPDOs and of the heartbeat, without the node.
+/// Identifiers without the node: of the TPDOs, of the heartbeat, and of all its frames.
 constexpr std::array<std::uint32_t, 4> tpdo_identifiers{0x180, 0x280, 0x380, 0x480};
 constexpr std::uint32_t heartbeat_identifier = 0x700;
+constexpr std::uint32_t sync_identifier = 0x080;
+constexpr std::array<std::uint32_t, 12> node_identifiers{0x080, 0x180, 0x200, 0x280, 0x300, 0x380,
+                                                         0x400, 0x480, 0x500, 0x580, 0x600, 0x700};
 
-/// Requires a SYNC or a heartbeat, because other devices use the identifiers of TPDOs. The contents of the
-/// TPDOs are configured in each drive.
+/// Returns false for a frame on an identifier of SYNC or heartbeats that is of another protocol.
+bool may_be_canopen(const hal::Frame& frame) {
+    if (frame.extended || frame.error || frame.fd || frame.remote) {
+        return false;
+    }
+    if (frame.id > heartbeat_identifier && frame.id <= heartbeat_identifier + 127) {
+        const unsigned state = frame.data[0] & 0x7FU;
+        return frame.length == 1 && (state == 0 || state == 4 || state == 5 || state == 127);
+    }
+    return frame.id != sync_identifier || frame.length <= 1;
+}
+
+/// Requires a SYNC or a heartbeat, because other devices use the identifiers of TPDOs. A heartbeat, or one
+/// TPDO for each SYNC, makes sure that it is a drive, even if its TPDO could be a feedback of a motor. The
+/// contents of the TPDOs are configured in each drive.
 Recognition recognise_drives(FrameSpan frames) {
+    constexpr double weight_of_sure = 2.5;
     std::map<std::uint32_t, std::vector<std::int64_t>> stamps;
     for (const hal::Frame& frame : frames) {
-        if (!frame.extended && !frame.error && !frame.fd && !frame.remote) {
+        if (may_be_canopen(frame)) {
             stamps[frame.id].push_back(frame.stamp_ns);
         }
     }
-    const bool synchronous = stamps[0x080].size() >= frames_to_recognise;
+    const std::size_t syncs = stamps[sync_identifier].size();
+    const bool synchronous = syncs >= frames_to_recognise;
     Recognition recognition;
     for (std::uint32_t node = 1; node <= 127; ++node) {
         RecognisedBoard board{.name = "node " + std::to_string(node), .entry = {{"node", node}}};
+        const bool heartbeat = !stamps[heartbeat_identifier + node].empty();
         for (const std::uint32_t tpdo : tpdo_identifiers) {
             const std::vector<std::int64_t>& times = stamps[tpdo + node];
-            if (times.size() < frames_to_recognise ||
-                (!synchronous && stamps[heartbeat_identifier + node].empty())) {
+            if (times.size() < frames_to_recognise || (!synchronous && !heartbeat)) {
                 continue;
             }
-            const double duration_s = 1e-9 * static_cast<double>(times.back() - times.front());
-            board.rate_hz = std::max(board.rate_hz, static_cast<double>(times.size() - 1) / duration_s);
+            board.rate_hz = std::max(board.rate_hz, usual_rate_hz(times));
             board.measured += (board.measured.empty() ? "sends " : ", ") + identifier_text(tpdo + node);
             recognition.identifiers.insert({false, tpdo + node});
-            recognition.score += static_cast<double>(times.size());
+            const bool answers_sync = 10 * times.size() >= 9 * syncs && 10 * times.size() <= 11 * syncs;
+            recognition.score +=
+                (heartbeat || answers_sync ? weight_of_sure : 1) * static_cast<double>(times.size());
         }
         if (board.rate_hz > 0) {
+            for (const std::uint32_t identifier : node_identifiers) {
+                recognition.reserved.insert({false, identifier + node});
+            }
             recognition.boards.push_back(std::move(board));
         }
     }
@@ -155,6 +177,7 @@ JointFamily cia402() {
         .read = read_drives,
         .devices = "Drives with CANopen and the profile CiA 402",
         .recognise = recognise_drives,
+        .no_draft = "what its frames contain is configured in each drive",
         .sync = hal::Cia402Drive::encode_sync};
 }
 

@@ -17,7 +17,7 @@ class CubemarsMitMotor final : public MotorBoard<CubemarsMitMotor, hal::Cubemars
     static bool takes_torque() { return true; }
     static ScaleAdvice advice() {
         return {"read the motor's type on its label, and its ranges in its manual",
-                "motor, or velocity_max; check torque_max, too"};
+                "Correct motor, or velocity_max. Check torque_max, too."};
     }
 };
 
@@ -28,7 +28,7 @@ class CubemarsServo final : public MotorBoard<CubemarsServo, hal::CubemarsServo>
     bool takes_torque() const { return codec().config().newton_metre_per_ampere != 0; }
     static ScaleAdvice advice() {
         return {"count the motor's turns for one of its output",
-                "pole_pairs or gear_ratio in the description"};
+                "Correct pole_pairs or gear_ratio in the description."};
     }
 };
 
@@ -121,7 +121,8 @@ double cubemars_plausibility(const hal::Frame& frame) {
     if (!short_frame && (frame.data[6] > 150 || frame.data[7] > 6)) {
         return 0;
     }
-    return 1 + (short_frame || frame.data[6] >= 5 ? 1 : 0) + (frame.id == 0 ? 0.5 : 0);
+    const bool cold = frame.data[6] > 0 && frame.data[7] == 0; // without an error
+    return 1 + (short_frame || frame.data[6] >= 5 || cold ? 1 : 0) + (frame.id == 0 ? 0.75 : 0);
 }
 
 Recognition recognise_mit_cubemars(FrameSpan frames) {

@@ -17,7 +17,7 @@ class DamiaoMotor final : public MotorBoard<DamiaoMotor, hal::DamiaoMotor> {
     static bool takes_torque() { return true; }
     static ScaleAdvice advice() {
         return {"read the motor's register 22 (VMAX)",
-                "velocity_max, and check torque_max and position_max: registers 23 and 21"};
+                "Correct velocity_max. Check torque_max and position_max: registers 23 and 21."};
     }
 };
 
@@ -103,9 +103,16 @@ Maxima reported_damiao_maxima(const MitCandidate& candidate, FrameSpan frames) {
 }
 
 Recognition recognise_damiao_motors(FrameSpan frames) {
-    return recognise_mit_motors<hal::DamiaoProtocol>(
+    Recognition recognition = recognise_mit_motors<hal::DamiaoProtocol>(
         frames, {damiao_types, "read its registers 21, 22 and 23", 15}, damiao_plausibility,
         [&](const MitCandidate& candidate) { return reported_damiao_maxima(candidate, frames); });
+    if (std::ranges::any_of(frames, [&](const hal::Frame& frame) {
+            return frame.fd && recognition.identifiers.contains({frame.extended, frame.id});
+        })) {
+        recognition.fields["fd"] = true;
+        recognition.unsure.emplace_back("fd: some frames are CAN FD, so that all commands are assumed to be");
+    }
+    return recognition;
 }
 
 } // namespace
@@ -131,7 +138,9 @@ JointFamily damiao() {
              "The high nibble of byte 0 is the state; an undocumented state is a fault.",
              "A motor that does not answer is not a joint at 0."},
         .types = {damiao_types.begin(), damiao_types.end()},
-        .recognise = recognise_damiao_motors};
+        .recognise = recognise_damiao_motors,
+        .not_operational = {"read the upper half of byte 0 of its feedback: 0 is disabled, 1 enabled",
+                            "Enable the motor: FF FF FF FF FF FF FF FC on its motor_id."}};
 }
 
 } // namespace dfdyn::tools::families

@@ -14,10 +14,19 @@
 
 namespace dfdyn::tools {
 
+/// JointFamily::no_draft of a family without efforts.
+inline constexpr std::string_view no_efforts = "its frames contain no efforts";
+
 /// A field of bus.json. `meaning` follows the name in docs/reference/can.md: range, unit, default.
 struct FamilyField {
     std::string_view name;
     std::string_view meaning;
+};
+
+/// Steps of a finding: a check that would confirm it, and the remedy. See BusFinding.
+struct Remedy {
+    std::string_view confirm;
+    std::string_view fix;
 };
 
 /// A family of boards with joints: all its properties except its codec in the HAL.
@@ -42,6 +51,9 @@ struct JointFamily {
     /// Recognises its devices in the frames of a bus without a description; null: not supported. Sends
     /// nothing.
     Recognition (*recognise)(FrameSpan frames) = nullptr;
+    std::string_view no_draft = {}; ///< reason why its recognition has no `quantity`; "": it has one
+    /// Returns the identifier of a frame without the state of its sender; null: identifiers contain none.
+    std::uint32_t (*stream_id)(const hal::Frame& frame) = nullptr;
 
     /// Returns the frame at which synchronous devices measure; null: they cannot be synchronous.
     hal::Frame (*sync)() = nullptr;
@@ -49,6 +61,8 @@ struct JointFamily {
     /// otherwise null.
     std::vector<hal::Frame> (*encode_together)(
         std::span<const BusBoard> boards, std::span<const std::array<hal::JointValue, 2>> values) = nullptr;
+    /// If a device is not in its operational state; by default that of CANopen.
+    Remedy not_operational = {"read its heartbeat: candump IFACE,700:780", "Start the node (NMT start)."};
 };
 
 struct DescribedWrenchSensor {
@@ -56,13 +70,14 @@ struct DescribedWrenchSensor {
     std::array<double, 6> limit; ///< measuring range per axis, ±
 };
 
-/// A family of force/torque sensors, with the same members as above.
+/// A family of force/torque sensors: members of JointFamily with the same meaning. `buscheck` does not
+/// recognise sensors without a description.
 struct SensorFamily {
     std::string_view name; ///< value of `output.family`
     std::vector<FamilyField> fields;
     std::string_view dbc = {};
     std::string_view example = {}; ///< `output` of an arm, for the tests
-    std::string_view devices = {}; ///< see JointFamily
+    std::string_view devices = {};
 
     DescribedWrenchSensor (*read)(const JsonReader& output, const std::filesystem::path& folder);
 };

@@ -54,7 +54,7 @@ class StrainBoard final : public SensorOf<StrainBoard, hal::icub::StrainBoard> {
                  std::to_string(codec().other_sets()) + " replies that differ, of set " +
                      std::to_string(codec().last_other_set()),
                  "ask for the set in use: cansend IFACE ID#1800, and 01 to 05",
-                 "let no other program ask for it; if it is in use: output.calibration_set"}};
+                 "Let no other program request it. If it is in use, set output.calibration_set."}};
     }
 
   private:

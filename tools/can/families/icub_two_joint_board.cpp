@@ -77,7 +77,8 @@ JointFamily icub_two_joint_board() {
                 {"address": 1, "joints": [1, 2], "ticks_per_degree": [182.04, -182.04]}]})",
             .read = read_two_joint_boards,
             .devices = "iCub motor boards with two joints (MC4, BLL, DSP)",
-            .recognise = recognise_two_joint_boards};
+            .recognise = recognise_two_joint_boards,
+            .no_draft = no_efforts};
 }
 
 } // namespace dfdyn::tools::families

@@ -15,7 +15,7 @@ class MoteusController final : public MotorBoard<MoteusController, hal::MoteusCo
     using MotorBoard::MotorBoard;
     static bool takes_torque() { return true; }
     static ScaleAdvice advice() {
-        return {"turn the joint by a known angle", "rotor_to_output_ratio in the controller"};
+        return {"turn the joint by a known angle", "Correct rotor_to_output_ratio in the controller."};
     }
 
     hal::Decoded decode(const hal::Frame& frame) noexcept override {
@@ -148,7 +148,10 @@ JointFamily moteus() {
                  "Positions as int8 have steps of 3.6 °.",
                  "Frames are padded with 0x50; error sub-frames may come between replies.",
                  "A fault code of 96 or more is a limit that is active, no fault."},
-            .recognise = recognise_moteus};
+            .recognise = recognise_moteus,
+            .not_operational = {"read its mode, register 0: 0 is stopped, 11 a timeout",
+                                "Command a mode that operates, such as 10 (position). After a timeout, stop "
+                                "the controller first."}};
 }
 
 } // namespace dfdyn::tools::families

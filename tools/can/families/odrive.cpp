@@ -58,8 +58,9 @@ void read_odrive_axes(const JsonReader& joints, const std::filesystem::path& /*f
         joints, [&](const JsonReader& board) { return read_odrive_axis(board, config); }, description);
 }
 
-/// Requires the heartbeat, because many frames look like two floats.
+/// Requires the heartbeat and possible angles, because many frames look like two floats.
 Recognition recognise_odrive_axes(FrameSpan frames) {
+    constexpr double implausible_rad = 1e6; // neutral commands of motors with MIT mode look like -3e29 turns
     Recognition recognition;
     for (int node = 0; node <= 63; ++node) {
         const auto heartbeat_id = static_cast<std::uint32_t>(node) << 5U | 1U;
@@ -67,12 +68,16 @@ Recognition recognise_odrive_axes(FrameSpan frames) {
             return hal::has_id(frame, heartbeat_id) && hal::check_form(frame, 8) == hal::Reason::ok;
         });
         const CodecFit fit = fit_codec(hal::OdriveAxis({.node = node}), frames);
-        if (heartbeats >= 3 && fit.fits()) {
+        const double largest_rad = std::max(-fit.joint[0].lowest_rad, fit.joint[0].highest_rad);
+        if (heartbeats >= 3 && fit.fits() && largest_rad < implausible_rad) {
             recognition.boards.push_back({.name = "axis " + std::to_string(node),
                                           .entry = {{"node", node}},
                                           .rate_hz = fit.joint[0].rate_hz()});
             recognition.identifiers.insert({false, heartbeat_id});
             recognition.identifiers.insert({false, heartbeat_id + 8});
+            for (std::uint32_t command = 0; command < 32; ++command) {
+                recognition.reserved.insert({false, static_cast<std::uint32_t>(node) << 5U | command});
+            }
             recognition.score += 2 * static_cast<double>(fit.values);
         }
     }
@@ -97,7 +102,8 @@ JointFamily odrive() {
                                                           {"node": 2, "joint": 2, "motor_per_joint": -9}]})",
             .read = read_odrive_axes,
             .devices = "ODrive axes with CANSimple, firmware 0.5 and 0.6",
-            .recognise = recognise_odrive_axes};
+            .recognise = recognise_odrive_axes,
+            .no_draft = no_efforts};
 }
 
 } // namespace dfdyn::tools::families

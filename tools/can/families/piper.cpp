@@ -17,7 +17,7 @@ class PiperPair final : public BoardOf<PiperPair, hal::PiperPair> {
 
     hal::Decoded decode(const hal::Frame& frame) noexcept override {
         if (codec().config().pair == 0) { // commands concern the arm
-            host_.take(codec().command(frame), false);
+            host_.take(codec().command(frame), false, frame.stamp_ns);
         }
         const hal::Decoded decoded = BoardOf::decode(frame);
         for (int i = 0; i < decoded.joints; ++i) {
@@ -41,10 +41,11 @@ class PiperPair final : public BoardOf<PiperPair, hal::PiperPair> {
         std::vector<BusFinding> all = host_.findings("the arm");
         for (std::size_t i = 0; i < velocity_.size(); ++i) {
             const int joint = codec().config().joint.at(i);
-            for (BusFinding& finding : velocity_findings(
-                     velocity_.at(i), joint,
-                     {"read the firmware's version (0x4AF)",
-                      R"(firmware in the description: "rpm" for speeds in revolutions per minute)"})) {
+            for (
+                BusFinding& finding : velocity_findings(
+                    velocity_.at(i), joint,
+                    {"read the firmware's version (0x4AF)",
+                     R"(Correct firmware in the description: "rpm" for speeds in revolutions per minute.)"})) {
                 if (joint != hal::unused_joint) {
                     all.push_back(std::move(finding));
                 }
@@ -225,7 +226,9 @@ JointFamily piper() {
                      "The six angles are in three frames that are measured at different times.",
                      "The SDK's effort is a current times a factor, not from a torque sensor.",
                      "The SDK scales a commanded torque to ±8 N·m; its documentation has ±18."},
-        .recognise = recognise_piper};
+        .recognise = recognise_piper,
+        .not_operational = {"read byte 5 of 0x261 to 0x266: bit 6 is set if the drive is enabled",
+                            "Enable the drives (0x471)."}};
 }
 
 } // namespace dfdyn::tools::families

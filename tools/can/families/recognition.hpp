@@ -23,6 +23,12 @@ struct RecognisedBoard {
     std::string measured = {}; ///< other results from its frames; "": none
 };
 
+/// A motor that is commanded or polled but never answers.
+struct SilentMotor {
+    unsigned motor = 0;
+    std::set<BusStreamKey> commands = {}; ///< identifiers of the commands and polls
+};
+
 /// Result of a family's recognition in the frames of a bus without a description.
 struct Recognition {
     std::vector<RecognisedBoard>
@@ -30,8 +36,11 @@ struct Recognition {
     nlohmann::json fields = nlohmann::json::object(); ///< of `joints`
     std::string quantity;                             ///< kind of its efforts: `tau`, `i`; "": none
     std::vector<std::string> unsure;                  ///< properties that the frames alone do not determine
-    std::vector<unsigned> silent;       ///< motors that are commanded or polled but never answer
-    std::set<BusStreamKey> identifiers; ///< explained identifiers
+    std::vector<SilentMotor> silent;
+    /// Explained identifiers: of answers, and of commands that are clearly for its motors.
+    std::set<BusStreamKey> identifiers;
+    /// Further identifiers of its boards, which are not commands to motors of other families.
+    std::set<BusStreamKey> reserved;
     double score = 0; ///< number of frames, weighted by how well they fit; compared between families
 };
 

@@ -17,11 +17,12 @@ namespace {
 class RmdMotor final : public MotorBoard<RmdMotor, hal::RmdMotor> {
   public:
     using MotorBoard::MotorBoard;
+    static constexpr bool needs_polls = true; ///< the angle of 1 ° in answers to commands is too coarse
     bool takes_torque() const { return codec().config().newton_metre_per_ampere != 0; }
     static ScaleAdvice advice() {
         return {
             "turn the joint by a known angle: some drivers report angles of the motor, others of its output",
-            "driver, counts_per_turn or motor_per_joint in the description"};
+            "Correct driver, counts_per_turn or motor_per_joint in the description."};
     }
 };
 
@@ -141,6 +142,26 @@ void add_rmd_motor(int motor, const JointFit& fit, Recognition& recognition) {
     }
 }
 
+/// Adds the silent motors. The identifier of one is explained if its frames begin with known commands.
+void add_silent_rmd_motors(FrameSpan frames, hal::RmdDriver driver, const std::set<unsigned>& answering,
+                           Recognition& recognition) {
+    recognition.silent = silent_motors(frames, 1, 32, answering, [&](unsigned motor) {
+        return hal::RmdMotor({.motor_id = static_cast<int>(motor), .driver = driver});
+    });
+    for (const SilentMotor& silent : recognition.silent) {
+        const std::uint32_t id = 0x140 + silent.motor;
+        const auto count = [&](auto matches) {
+            return std::ranges::count_if(
+                frames, [&](const hal::Frame& frame) { return hal::has_id(frame, id) && matches(frame); });
+        };
+        const auto all = count([](const hal::Frame&) { return true; });
+        const auto known = count([](const hal::Frame& frame) { return is_rmd_answer(frame.data[0]); });
+        if (all > 0 && 10 * known >= 9 * all) {
+            recognition.identifiers.insert({false, id});
+        }
+    }
+}
+
 /// Adds the properties of recognised motors that the frames do not determine.
 void add_rmd_doubts(hal::RmdPosition position, const std::map<int, hal::RmdPosition>& finest_of, bool old,
                     std::vector<std::string>& unsure) {
@@ -180,9 +201,7 @@ Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
         }
     }
     if (!answering.empty()) {
-        recognition.silent = silent_motors(frames, 1, 32, answering, [&](unsigned motor) {
-            return hal::RmdMotor({.motor_id = static_cast<int>(motor), .driver = driver});
-        });
+        add_silent_rmd_motors(frames, driver, answering, recognition);
     }
     const hal::RmdPosition position = // of all motors of the draft
         finest_of.empty() ? hal::RmdPosition::multi_turn : std::ranges::min(finest_of | std::views::values);
@@ -215,7 +234,10 @@ JointFamily rmd() {
             .sources = {"MyActuator, Motor Motion Protocol V4.2 (2024-05), and three independent drivers"},
             .pitfalls = {"V2 drivers answer on the identifier of the requests, with 33/2048 A per count.",
                          "The angle in the answer to 0x9C has steps of 1 °: too coarse to learn from.",
-                         "A request has the first byte of its answer; with V2 drivers its identifier, too."},
+                         "A request has the first byte of its answer; with V2 drivers its identifier, too.",
+                         "A V2 driver's angle of exactly 0 looks like its request: it counts at rest only, "
+                         "and only if it is answered.",
+                         "V2 drivers: 0xA5 and 0xA6 have the direction where answers have the temperature."},
             .recognise = recognise_rmd};
 }
 

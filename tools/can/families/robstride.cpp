@@ -10,7 +10,7 @@ namespace dfdyn::tools::families {
 namespace {
 
 constexpr ScaleAdvice robstride_advice{"read the motor's type on its label, and its ranges in its manual",
-                                       "motor, or velocity_max; check torque_max, too"};
+                                       "Correct motor, or velocity_max. Check torque_max, too."};
 
 /// Accepts torque commands: the motor's own command with zero stiffness and damping.
 class RobstrideMotor final : public MotorBoard<RobstrideMotor, hal::RobstrideMotor> {
@@ -148,6 +148,19 @@ RobstrideAnswers::const_iterator main_robstride_host(const RobstrideAnswers& ans
     });
 }
 
+/// Adds the identifiers of all feedback, and of the commands to the answering motors.
+void add_robstride_identifiers(FrameSpan frames, const std::set<unsigned>& answering,
+                               std::set<BusStreamKey>& identifiers) {
+    for (const hal::Frame& frame : frames) {
+        if (frame.extended && frame.id >> 24U == 2) {
+            identifiers.insert({true, frame.id});
+        }
+    }
+    for (const unsigned motor : answering) {
+        add_commands(frames, hal::RobstrideMotor({.motor_id = static_cast<int>(motor)}), identifiers);
+    }
+}
+
 Recognition recognise_private_robstride(FrameSpan frames) {
     Recognition recognition;
     recognition.quantity = "tau";
@@ -176,11 +189,7 @@ Recognition recognise_private_robstride(FrameSpan frames) {
             return hal::RobstrideMotor({.motor_id = static_cast<int>(motor)});
         });
     }
-    for (const hal::Frame& frame : frames) {
-        if (frame.extended && frame.id >> 24U == 2) {
-            recognition.identifiers.insert({true, frame.id});
-        }
-    }
+    add_robstride_identifiers(frames, answering, recognition.identifiers);
     recognition.fields = {{"protocol", "private"}, {"host_id", identifier_text(main_host->first)}};
     if (answers.size() > 1) {
         recognition.unsure.push_back(std::to_string(answers.size()) +
@@ -192,7 +201,9 @@ Recognition recognise_private_robstride(FrameSpan frames) {
 /// Returns 0 if the frame cannot be a feedback of such a motor, 1 if it can be, more with evidence for it.
 double robstride_plausibility(const hal::Frame& frame) {
     const double celsius = hal::RobstrideMitProtocol::temperature(frame);
-    return celsius > 150 ? 0 : 1 + (celsius >= 5 && celsius <= 130 ? 1 : 0) + (frame.id == 0xFD ? 0.5 : 0);
+    const bool warm = celsius >= 5 && celsius <= 130;
+    const bool cubemars_error = frame.data[7] <= 6; // then byte 6 may be the temperature of a CubeMars motor
+    return celsius > 150 ? 0 : 1 + (warm ? (cubemars_error ? 0.5 : 1) : 0) + (frame.id == 0xFD ? 0.5 : 0);
 }
 
 Recognition recognise_mit_robstride(FrameSpan frames) {
@@ -232,7 +243,10 @@ JointFamily robstride() {
                      "Manuals disagree on the order of host and motor in a fault frame; both are accepted.",
                      "LeRobot's position_max of the RS06, 112.5, is assumed to be a typing error."},
         .types = {robstride_types.begin(), robstride_types.end()},
-        .recognise = recognise_robstride};
+        .recognise = recognise_robstride,
+        .stream_id = hal::RobstrideMotor::stream_id,
+        .not_operational = {"read bits 23 and 22 of the identifier of its feedback: 2 is the mode run",
+                            "Enable the motor (type 3)."}};
 }
 
 } // namespace dfdyn::tools::families

@@ -11,11 +11,18 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace dfdyn::tools {
+
+/// Returns the usual rate (Hz) of a sender. Pauses, single losses and clock steps do not change it. It is the
+/// median over four intervals, because two answers may come per period. If an adapter delivers frames in
+/// bursts, it is the mean over about 0.25 s. 0: fewer than two stamps, or none that increase.
+double usual_rate_hz(std::span<const std::int64_t> stamps_ns);
 
 /// Fit of a codec to the frames of a bus, for one joint.
 struct JointFit {
@@ -24,17 +31,13 @@ struct JointFit {
     std::uint64_t jumps = 0;  ///< between consecutive positions, faster than any joint
     std::uint64_t at_end = 0; ///< positions at an end of their code
     std::uint64_t efforts = 0;
-    std::int64_t first_ns = 0, last_ns = 0;
+    std::vector<std::int64_t> position_ns; ///< stamps of the positions
     double last_rad = 0;
     double lowest_rad = std::numeric_limits<double>::max(),
            highest_rad = std::numeric_limits<double>::lowest();
 
-    double rate_hz() const noexcept {
-        return positions > 1 && last_ns > first_ns
-                   ? 1e9 * static_cast<double>(positions - 1) / static_cast<double>(last_ns - first_ns)
-                   : 0;
-    }
-    void take(const hal::JointValue& value) noexcept;
+    double rate_hz() const { return usual_rate_hz(position_ns); }
+    void take(const hal::JointValue& value);
 };
 
 struct CodecFit {
@@ -61,26 +64,51 @@ CodecFit fit_codec(Codec codec, FrameSpan frames, int joint = 0) {
     return fit;
 }
 
+/// Number of frames required to recognise a device.
+inline constexpr std::uint64_t frames_to_recognise = 10;
+
+/// Adds the identifiers of commands and polls to the motor of `codec`. Returns the number of these frames.
+template <class Codec>
+std::uint64_t add_commands(FrameSpan frames, const Codec& codec, std::set<BusStreamKey>& identifiers) {
+    std::uint64_t commands = 0;
+    for (const hal::Frame& frame : frames) {
+        if (codec.command(frame) != hal::MotorCommand::none) {
+            identifiers.insert({frame.extended, frame.id});
+            ++commands;
+        }
+    }
+    return commands;
+}
+
+/// Returns the frames that none of the `answering` motors sent, if answers look like commands to a motor with
+/// the number of the host (`Codec::answering_motor`); otherwise all frames.
+template <class Codec>
+std::vector<hal::Frame> without_answers(FrameSpan frames, const std::set<unsigned>& answering) {
+    std::vector<hal::Frame> others(frames.begin(), frames.end());
+    if constexpr (requires(const hal::Frame& frame) { Codec::answering_motor(frame); }) {
+        std::erase_if(others, [&](const hal::Frame& frame) {
+            const std::optional<unsigned> sender = Codec::answering_motor(frame);
+            return sender && answering.contains(*sender);
+        });
+    }
+    return others;
+}
+
 /// Returns the motors of `first` … `last` that are commanded or polled, but are not among `answering`.
 /// `codec_of(motor)`: a codec with `command`.
 template <class CodecOf>
-std::vector<unsigned> silent_motors(FrameSpan frames, unsigned first, unsigned last,
-                                    const std::set<unsigned>& answering, CodecOf codec_of) {
-    constexpr int often = 10;
-    std::vector<unsigned> silent;
+std::vector<SilentMotor> silent_motors(FrameSpan frames, unsigned first, unsigned last,
+                                       const std::set<unsigned>& answering, CodecOf codec_of) {
+    const std::vector<hal::Frame> asking = without_answers<decltype(codec_of(first))>(frames, answering);
+    std::vector<SilentMotor> silent;
     for (unsigned motor = first; motor <= last; ++motor) {
-        const auto codec = codec_of(motor);
-        const auto asked = [&](const hal::Frame& frame) {
-            return codec.command(frame) != hal::MotorCommand::none;
-        };
-        if (!answering.contains(motor) && std::ranges::count_if(frames, asked) >= often) {
-            silent.push_back(motor);
+        SilentMotor asked{.motor = motor};
+        if (!answering.contains(motor) &&
+            add_commands(asking, codec_of(motor), asked.commands) >= frames_to_recognise) {
+            silent.push_back(std::move(asked));
         }
     }
     return silent;
 }
-
-/// Number of frames required to recognise a device.
-inline constexpr std::uint64_t frames_to_recognise = 10;
 
 } // namespace dfdyn::tools

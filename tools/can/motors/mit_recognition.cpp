@@ -71,6 +71,41 @@ void drop_selections(std::vector<MitCandidate>& candidates) {
     });
 }
 
+void drop_repeated_motors(std::vector<MitCandidate>& candidates) {
+    constexpr double clearly = 0.2;
+    constexpr double own_identifier = 0.5;
+    std::map<unsigned, std::vector<std::pair<double, std::uint32_t>>> fits; // plausibility and identifier
+    for (const MitCandidate& candidate : candidates) {
+        const double bonus = candidate.feedback_id == candidate.motor ? own_identifier : 0;
+        fits[candidate.motor].emplace_back(candidate.plausibility + bonus, candidate.feedback_id);
+    }
+    for (auto& [motor, of_motor] : fits) {
+        std::ranges::sort(of_motor, std::ranges::greater());
+    }
+    std::erase_if(candidates, [&](const MitCandidate& candidate) {
+        const auto& of_motor = fits.at(candidate.motor);
+        const auto& [fit, identifier] = of_motor.front();
+        return of_motor.size() > 1 && (of_motor.size() > 2 || identifier != candidate.feedback_id ||
+                                       fit < of_motor.back().first + clearly);
+    });
+    for (MitCandidate& candidate : candidates) {
+        if (const auto& of_motor = fits.at(candidate.motor); of_motor.size() > 1) {
+            candidate.other_id = of_motor.back().second;
+        }
+    }
+}
+
+double explained_share(const MitCandidate& candidate, std::span<const MitCandidate> candidates) {
+    if (candidate.feedback_id == candidate.motor) {
+        return 1;
+    }
+    std::uint64_t explained = 0;
+    for (const MitCandidate& other : candidates) {
+        explained += other.feedback_id == candidate.feedback_id ? other.frames : 0;
+    }
+    return static_cast<double>(explained) / static_cast<double>(candidate.of_id);
+}
+
 namespace {
 
 /// Maxima of the types whose velocity_max is near a listed or measured one.

@@ -38,6 +38,8 @@ struct MitCandidate {
     double plausibility = 0;  ///< mean of `plausible` over its frames
     SteadyBytes steady;
     CodecFit fit; ///< fit with `assumed`
+    /// Another identifier with steady frames of its number, which do not fit as well.
+    std::optional<std::uint32_t> other_id;
     static constexpr Maxima assumed{12.5, 30, 10};
     static constexpr double least_plausibility = 1.5;
 };
@@ -45,6 +47,15 @@ struct MitCandidate {
 /// Removes the candidates of identifiers on which several together leave more than a few frames unexplained,
 /// because byte 0 is then not a motor number.
 void drop_selections(std::vector<MitCandidate>& candidates);
+
+/// Keeps one candidate of each motor: the one whose frames are clearly more plausible than those of the
+/// other, as on the family's usual identifier. Without such a one, or with three or more identifiers, byte 0
+/// is not a motor number, and none is kept.
+void drop_repeated_motors(std::vector<MitCandidate>& candidates);
+
+/// Returns the share of the frames of an identifier that its candidates explain. Other frames on the
+/// identifier of a motor that answers on its own one are commands.
+double explained_share(const MitCandidate& candidate, std::span<const MitCandidate> candidates);
 
 /// Returns the frames by identifier and motor, with their plausibility. `Protocol`: a MitProtocol.
 /// `plausible(frame)`: 0 (not such a frame) to 1.
@@ -97,11 +108,12 @@ std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, 
                                                            .torque_max = MitCandidate::assumed[2],
                                                            .shared_feedback_id = true}),
                                   frames);
-        if (candidate.fit.fits()) {
+        if (candidate.fit.fits() && !candidate.fit.joint[0].velocity.is_unrelated()) {
             candidates.push_back(candidate);
         }
     }
     drop_selections(candidates);
+    drop_repeated_motors(candidates);
     return candidates;
 }
 
@@ -131,6 +143,18 @@ MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, con
 void add_motor(unsigned motor, const JointFit& fit, double assumed, const MotorSearch& search,
                const Maxima& known, nlohmann::json entry, Recognition& recognition);
 
+/// Adds the identifier of the motor's commands if some come. Those of its other modes may be other devices'.
+template <hal::MitProtocol Protocol>
+void add_own_commands(FrameSpan frames, unsigned motor, std::set<BusStreamKey>& identifiers) {
+    const hal::MitMotor<Protocol> codec({.motor_id = static_cast<int>(motor), .feedback_id = 0x7FE});
+    const auto own = [&](const hal::Frame& frame) {
+        return hal::has_id(frame, motor) && codec.command(frame) != hal::MotorCommand::none;
+    };
+    if (std::ranges::count_if(frames, own) >= static_cast<std::ptrdiff_t>(frames_to_recognise)) {
+        identifiers.insert({false, motor});
+    }
+}
+
 /// Recognises motors with MIT mode. `known(candidate)`: the maxima that a motor itself reported.
 template <hal::MitProtocol Protocol, class Plausible, class Known>
 Recognition recognise_mit_motors(FrameSpan frames, const MotorSearch& search, Plausible plausible,
@@ -142,13 +166,20 @@ Recognition recognise_mit_motors(FrameSpan frames, const MotorSearch& search, Pl
     std::ranges::sort(candidates, {}, &MitCandidate::motor);
     std::set<unsigned> answering;
     for (const MitCandidate& candidate : candidates) {
-        if (candidate.motor > search.last_motor || answering.contains(candidate.motor)) {
+        if (candidate.motor > search.last_motor) {
             continue;
         }
         add_motor(candidate.motor, candidate.fit.joint[0], MitCandidate::assumed[1], search, known(candidate),
                   {{"feedback_id", identifier_text(candidate.feedback_id)}}, recognition);
+        if (candidate.other_id) {
+            recognition.unsure.push_back("motor " + std::to_string(candidate.motor) + ": frames on " +
+                                         identifier_text(*candidate.other_id) +
+                                         " have its number, too; they are not in the draft");
+        }
         recognition.identifiers.insert({false, candidate.feedback_id});
-        recognition.score += static_cast<double>(candidate.frames) * candidate.plausibility;
+        recognition.score += static_cast<double>(candidate.frames) * candidate.plausibility *
+                             explained_share(candidate, candidates);
+        add_own_commands<Protocol>(frames, candidate.motor, recognition.identifiers);
         answering.insert(candidate.motor);
     }
     for (const MitCandidate& candidate : candidates) {

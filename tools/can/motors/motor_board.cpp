@@ -16,12 +16,12 @@ std::vector<BusFinding> velocity_findings(const VelocityCheck& check, int joint,
     if (std::abs(check.ratio()) < standing) {
         return {{"encoder_frozen", name + " does not move while its motor reports a velocity", evidence,
                  "move the joint by hand: the bytes of its position do not change",
-                 "check the encoder and its cable; restart the motor"}};
+                 "Check the encoder and its cable. Restart the motor."}};
     }
     if (check.ratio() < 0) {
         return {{"velocity_sign", name + " moves against its motor's velocity", evidence,
                  "turn the joint by hand: position and velocity have the same sign",
-                 "correct the sign of the motor's transmission or of its encoder"}};
+                 "Correct the sign of the motor's transmission or of its encoder."}};
     }
     return {{"velocity_scale", name + " moves at a speed that differs from its motor's velocity", evidence,
              advice.confirm, advice.fix}};

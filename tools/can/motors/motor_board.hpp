@@ -29,11 +29,13 @@ class MotorBoard : public BoardOf<Derived, Codec> {
     using Base = BoardOf<Derived, Codec>;
     using Base::Base;
     using Base::codec;
+    /// True if answers to commands have no position.
+    static constexpr bool needs_polls = false;
 
     hal::Decoded decode(const hal::Frame& frame) noexcept override {
         const hal::MotorCommand command = codec().command(frame);
         if (command != hal::MotorCommand::none) {
-            host_.take(command, codec().decode_torque(frame).has_value());
+            host_.take(command, codec().decode_torque(frame).has_value(), frame.stamp_ns);
         }
         const hal::Decoded decoded = Base::decode(frame);
         if (decoded.kind == hal::Decoded::Kind::values) {
@@ -54,15 +56,15 @@ class MotorBoard : public BoardOf<Derived, Codec> {
     std::vector<BusFinding> findings() const override {
         const int joint = codec().config().joint;
         std::vector<BusFinding> findings = velocity_findings(velocity_, joint, Derived::advice());
-        for (BusFinding& finding : host_.findings(name())) {
+        for (BusFinding& finding : host_.findings(name(), Derived::needs_polls)) {
             findings.push_back(std::move(finding));
         }
         return findings;
     }
     std::string host_summary() const override { return host_.summary(); }
-    bool is_aside(const hal::Frame& frame) const override {
-        if constexpr (requires { codec().is_aside(frame); }) {
-            return codec().is_aside(frame);
+    bool carries_no_values(const hal::Frame& frame) const override {
+        if constexpr (requires { codec().carries_no_values(frame); }) {
+            return codec().carries_no_values(frame);
         }
         return false;
     }

@@ -97,6 +97,18 @@ bool VelocityCheck::is_sure() const noexcept {
            errors_to_be_sure * ratio_error() < std::max(std::abs(ratio()), largest_deviation);
 }
 
+bool VelocityCheck::is_unrelated() const noexcept {
+    constexpr double more_than_noise_rad = 0.01; // mean step
+    constexpr double least_correlation = 0.5;
+    if (steps_ < least_steps || distance_rad_ < more_than_noise_rad * steps_ || !varies()) {
+        return false;
+    }
+    const double variance = squares_ - expected_ * expected_ / steps_;
+    const double moved_variance = moved_squares_ - moved_ * moved_ / steps_;
+    const double covariance = products_ - expected_ * moved_ / steps_;
+    return std::abs(covariance) < least_correlation * std::sqrt(std::max(variance * moved_variance, 0.0));
+}
+
 bool VelocityCheck::contradicts() const noexcept {
     const double deviation = std::abs(ratio() - 1);
     return is_sure() && deviation > largest_deviation && deviation > errors_to_be_sure * ratio_error();

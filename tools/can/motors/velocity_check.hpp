@@ -24,6 +24,8 @@ class VelocityCheck {
 
     /// True if enough was compared to state the ratio.
     bool is_sure() const noexcept;
+    /// True if the positions move by more than noise, but not with the velocities: they are other data.
+    bool is_unrelated() const noexcept;
     /// True if the ratio differs significantly from 1.
     bool contradicts() const noexcept;
 

@@ -1,21 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/recognition/recognised_bus.hpp"
 
+#include "dfdyn/hal/bits.hpp"
 #include "dfdyn/hal/replay_bus.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
-#include "tools/can/check/bus_check.hpp"
 #include "tools/can/families/family_catalogue.hpp"
+#include "tools/can/recognition/bus_draft.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <set>
 
 namespace dfdyn::tools {
 
+void TrafficTime::take(std::int64_t stamp_ns) noexcept {
+    constexpr std::int64_t longest_ns = 1'000'000'000;
+    const std::int64_t step_ns = latest_ns_ ? hal::wrapping_difference(stamp_ns, *latest_ns_) : 0;
+    sum_ns_ += step_ns > 0 && step_ns <= longest_ns ? step_ns : 0;
+    if (!latest_ns_ || step_ns > 0 || step_ns < -longest_ns) {
+        latest_ns_ = stamp_ns;
+    }
+}
+
 void TrafficRecorder::take(const hal::Frame& frame) noexcept {
-    const bool early = frames_.empty() || seconds_of(frame.stamp_ns - frames_.front().stamp_ns) < longest_s;
-    if (!frame.error && early && frames_.size() < most_frames) {
+    if (frame.error || frames_.size() == most_frames || time_.seconds() >= longest_s) {
+        return;
+    }
+    time_.take(frame.stamp_ns);
+    if (time_.seconds() < longest_s) {
         frames_.push_back(frame);
     }
 }
@@ -46,59 +57,54 @@ bool overlap(const Recognition& a, const Recognition& b) {
                                [&](const BusStreamKey& key) { return b.identifiers.contains(key); });
 }
 
-/// Returns each family that explains identifiers better than any other, best first.
-std::vector<RecognisedFamily> recognise_families(std::span<const hal::Frame> frames) {
+/// Returns all families that can have sent some of the frames, best first.
+std::vector<RecognisedFamily> possible_families(std::span<const hal::Frame> frames) {
     std::vector<RecognisedFamily> all;
     for (const JointFamily& family : joint_families()) {
         if (family.recognise != nullptr) {
             Recognition recognition = family.recognise(frames);
             if (!recognition.boards.empty()) {
-                all.push_back({family.name, std::move(recognition)});
+                all.push_back({family.name, std::move(recognition), family.no_draft, family.stream_id});
             }
         }
     }
     std::ranges::stable_sort(all, std::ranges::greater(),
                              [](const RecognisedFamily& family) { return family.recognition.score; });
+    return all;
+}
+
+/// Removes the silent motors whose commands are frames of the boards of other families.
+void drop_explained_motors(std::vector<RecognisedFamily>& families) {
+    for (RecognisedFamily& family : families) {
+        const auto explained = [&](const BusStreamKey& command) {
+            return std::ranges::any_of(families, [&](const RecognisedFamily& other) {
+                return &other != &family && (other.recognition.identifiers.contains(command) ||
+                                             other.recognition.reserved.contains(command));
+            });
+        };
+        std::erase_if(family.recognition.silent, [&](const SilentMotor& motor) {
+            return std::ranges::all_of(motor.commands, explained);
+        });
+    }
+}
+
+/// Returns each family that explains identifiers better than any other, best first.
+std::vector<RecognisedFamily> recognise_families(std::span<const hal::Frame> frames) {
+    constexpr double as_good = 0.98;
     std::vector<RecognisedFamily> chosen;
-    for (RecognisedFamily& family : all) {
-        if (std::ranges::none_of(chosen, [&](const RecognisedFamily& better) {
-                return overlap(better.recognition, family.recognition);
-            })) {
+    for (RecognisedFamily& family : possible_families(frames)) {
+        const auto better = std::ranges::find_if(chosen, [&](const RecognisedFamily& other) {
+            return overlap(other.recognition, family.recognition);
+        });
+        if (better == chosen.end()) {
             chosen.push_back(std::move(family));
+        } else if (family.recognition.score >= as_good * better->recognition.score) {
+            better->recognition.unsure.push_back("the family: its frames may also be those of " +
+                                                 std::string(family.name));
         }
     }
+    drop_explained_motors(chosen);
     return chosen;
-}
-
-/// Rounds a rate (Hz) to three significant digits.
-double rounded_rate(double rate_hz) {
-    const double step = std::pow(10, std::floor(std::log10(rate_hz)) - 2);
-    return std::round(rate_hz / step) * step;
-}
-
-nlohmann::json draft_of(const RecognisedFamily& family) {
-    const Recognition& recognition = family.recognition;
-    nlohmann::json joints = recognition.fields;
-    joints["family"] = family.name;
-    int joint = 0;
-    double rate_hz = recognition.boards.front().rate_hz;
-    for (const RecognisedBoard& board : recognition.boards) {
-        nlohmann::json entry = board.entry;
-        if (board.joints == 1) {
-            entry["joint"] = ++joint;
-        } else {
-            entry["joints"] = {joint + 1, joint + 2};
-            joint += 2;
-        }
-        joints["boards"].push_back(entry);
-        rate_hz = std::min(rate_hz, board.rate_hz);
-    }
-    return {{"schema", "dfdyn.bus/1"},
-            {"bit_rate", 1'000'000},
-            {"sample_rate_hz", rounded_rate(rate_hz)},
-            {"trigger", {{"on", "timer"}}},
-            {"joints", joints},
-            {"output", {{"family", "efforts"}, {"quantity", recognition.quantity}}}};
 }
 
 /// Returns true for rules that require a description by a person: senders and their rates.
@@ -131,6 +137,72 @@ void check_draft(const BusDescription& description, std::span<const hal::Frame> 
     }
 }
 
+void report_silent_motors(RecognisedBus& result) {
+    for (const RecognisedFamily& known : result.families) {
+        for (const SilentMotor& silent : known.recognition.silent) {
+            result.findings.push_back({"silent_motor",
+                                       std::string(known.name) + " motor " + std::to_string(silent.motor) +
+                                           " is commanded and never answers",
+                                       "commands to it, and no frame of it",
+                                       "read its state with the maker's own program",
+                                       "Check the motor's power, cable and number. It is not a joint at 0."});
+        }
+    }
+}
+
+/// Makes a draft of the first family with efforts, and checks it.
+void make_draft(std::span<const hal::Frame> frames, RecognisedBus& result) {
+    std::string without_efforts;
+    for (RecognisedFamily& family : result.families) {
+        if (family.recognition.quantity.empty()) {
+            without_efforts += (without_efforts.empty() ? "" : "; ") + std::string(family.name) + ": " +
+                               std::string(family.no_draft);
+            continue;
+        }
+        try {
+            nlohmann::json draft = draft_of(family, frames);
+            check_draft(parse_bus_description(draft, "the draft"), frames, result);
+            result.draft = std::move(draft);
+            result.draft_error.clear();
+            return;
+        } catch (const InputError& error) {
+            result.draft_error = error.what();
+        }
+    }
+    if (result.draft_error.empty()) {
+        result.draft_error = without_efforts;
+    }
+}
+
+/// Returns the identifier `key` without the state of its sender.
+std::uint32_t stateless_id(const RecognisedFamily& family, const BusStreamKey& key) {
+    hal::Frame frame = hal::make_frame(key.second, 8);
+    frame.extended = key.first;
+    return family.stream_id(frame);
+}
+
+/// Removes the findings about identifiers that end or pause because the state in them changed.
+void drop_changes_of_state(const RecognisedFamily& family, const BusStreams& streams,
+                           std::vector<BusFinding>& findings) {
+    for (const auto& [key, stream] : streams) {
+        const std::uint32_t id = stateless_id(family, key);
+        bool others = false;
+        bool later = false;
+        for (const auto& [other, state] : streams) {
+            if (other != key && other.first == key.first && stateless_id(family, other) == id) {
+                others = true;
+                later = later || state.last_ns > stream.last_ns;
+            }
+        }
+        const std::string subject = id_text(key) + " ";
+        std::erase_if(findings, [&](const BusFinding& finding) {
+            return finding.what.starts_with(subject) &&
+                   ((later && finding.rule == "source_stopped") ||
+                    (others && (finding.rule == "gaps" || finding.rule == "lost_frames")));
+        });
+    }
+}
+
 } // namespace
 
 RecognisedBus recognise_bus(std::span<const hal::Frame> frames) {
@@ -139,35 +211,37 @@ RecognisedBus recognise_bus(std::span<const hal::Frame> frames) {
         result.draft_error = "there are no frames";
         return result;
     }
-    result.duration_s = seconds_of(frames.back().stamp_ns - frames.front().stamp_ns);
+    TrafficTime time;
+    for (const hal::Frame& frame : frames) {
+        time.take(frame.stamp_ns);
+    }
+    result.duration_s = time.seconds();
     result.families = recognise_families(frames);
     if (result.families.empty()) {
-        result.draft_error = "no family of devices is recognised";
+        result.draft_error =
+            "no family of devices is recognised in " +
+            (frames.size() < 2 ? "one frame"
+                               : "the first " + rounded_text(result.duration_s) + " s of traffic");
         return result;
     }
-    for (const RecognisedFamily& known : result.families) {
-        for (const unsigned motor : known.recognition.silent) {
-            result.findings.push_back({"silent_motor",
-                                       std::string(known.name) + " motor " + std::to_string(motor) +
-                                           " is commanded and never answers",
-                                       "commands to it, and no frame of it",
-                                       "read its state with the maker's own program",
-                                       "check the motor's power, cable and number; it is not a joint at 0"});
+    report_silent_motors(result);
+    make_draft(frames, result);
+    return result;
+}
+
+void add_findings(const RecognisedBus& bus, const BusCheck& check, std::vector<BusFinding>& findings) {
+    for (const RecognisedFamily& family : bus.families) {
+        if (family.stream_id != nullptr) {
+            drop_changes_of_state(family, check.streams(), findings);
         }
     }
-    const RecognisedFamily& family = result.families.front();
-    if (family.recognition.quantity.empty()) {
-        result.draft_error = "the boards send no efforts, and no sensor is recognised";
-        return result;
+    for (const BusFinding& finding : bus.findings) {
+        if (std::ranges::none_of(findings, [&](const BusFinding& other) {
+                return other.rule == finding.rule && other.what == finding.what;
+            })) {
+            findings.push_back(finding);
+        }
     }
-    nlohmann::json draft = draft_of(family);
-    try {
-        check_draft(parse_bus_description(draft, "the draft"), frames, result);
-        result.draft = std::move(draft);
-    } catch (const InputError& error) {
-        result.draft_error = error.what();
-    }
-    return result;
 }
 
 nlohmann::ordered_json recognised_json(const RecognisedBus& bus) {
@@ -212,6 +286,10 @@ void print_recognised_bus(std::ostream& out, const RecognisedBus& bus) {
     }
     for (const std::string& commands : bus.commands) {
         out << "  other programs command " << commands << '\n';
+    }
+    if (bus.draft && bus.families.size() > 1) {
+        out << "  the draft has the joints of " << bus.draft->at("joints").at("family").get<std::string>()
+            << " only\n";
     }
     if (!bus.draft) {
         out << "  no draft of a description: " << bus.draft_error << '\n';

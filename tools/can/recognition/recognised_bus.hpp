@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/bus.hpp"
+#include "tools/can/check/bus_check.hpp"
 #include "tools/can/description/bus_finding.hpp"
 #include "tools/can/families/family.hpp"
 
@@ -16,7 +17,19 @@
 
 namespace dfdyn::tools {
 
-/// Stores the first frames of a bus without a description, at most `longest_s` of them.
+/// Sums the time between frames, without pauses of the bus and steps of its clock. Frames that come late are
+/// not a step.
+class TrafficTime {
+  public:
+    void take(std::int64_t stamp_ns) noexcept;
+    double seconds() const noexcept { return 1e-9 * static_cast<double>(sum_ns_); }
+
+  private:
+    std::optional<std::int64_t> latest_ns_;
+    std::int64_t sum_ns_ = 0;
+};
+
+/// Stores the first frames of a bus without a description: `longest_s` of traffic, without its pauses.
 class TrafficRecorder {
   public:
     static constexpr double longest_s = 5;
@@ -28,6 +41,7 @@ class TrafficRecorder {
 
   private:
     std::vector<hal::Frame> frames_;
+    TrafficTime time_;
 };
 
 /// A bus whose frames are also recorded, and that sends nothing.
@@ -57,20 +71,27 @@ class RecordedBus {
 struct RecognisedFamily {
     std::string_view name;
     Recognition recognition;
+    std::string_view no_draft = {};                                ///< JointFamily::no_draft
+    std::uint32_t (*stream_id)(const hal::Frame& frame) = nullptr; ///< JointFamily::stream_id
 };
 
 /// Result of the recognition of a bus without a description.
 struct RecognisedBus {
-    double duration_s = 0;                  ///< duration of the evaluated frames
-    std::vector<RecognisedFamily> families; ///< families with joints; the first one is in the draft
-    std::optional<nlohmann::json> draft;    ///< a valid description; none without joints and efforts
-    std::string draft_error;                ///< reason for a missing draft
-    std::vector<BusFinding> findings;       ///< of the draft's devices, in these frames
-    std::vector<std::string> commands;      ///< commands of other programs
+    double duration_s = 0; ///< duration of the evaluated frames, without pauses
+    std::vector<RecognisedFamily>
+        families;                        ///< families with joints; the first one with efforts is in the draft
+    std::optional<nlohmann::json> draft; ///< a valid description; none without joints and efforts
+    std::string draft_error;             ///< reason for a missing draft
+    std::vector<BusFinding> findings;    ///< of the draft's devices, in these frames
+    std::vector<std::string> commands;   ///< commands of other programs
 };
 
-/// Recognises the devices that sent these frames, which must be in the order of time.
+/// Recognises the devices that sent these frames, which must be in the order of their arrival.
 RecognisedBus recognise_bus(std::span<const hal::Frame> frames);
+
+/// Adds the findings of `bus` that are not yet among `findings`, which are those of `check`, of all frames.
+/// Removes those about an identifier whose sender changed its state and sends under another one.
+void add_findings(const RecognisedBus& bus, const BusCheck& check, std::vector<BusFinding>& findings);
 
 /// Returns the figures of print_recognised_bus: `families` (names), `recognised` (boards with their rates,
 /// uncertain properties), `commands`, and `draft_error`, which is null if there is a draft.

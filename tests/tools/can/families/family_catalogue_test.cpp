@@ -6,7 +6,6 @@
 #include "tests/tools/support/name_literals.hpp"
 #include "tools/can/arm/torque_frames.hpp"
 #include "tools/can/description/bus_fields.hpp"
-#include "tools/can/families/device_page.hpp"
 
 #include <filesystem>
 #include <set>

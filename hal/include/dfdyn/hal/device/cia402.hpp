@@ -56,6 +56,9 @@ class Cia402Drive {
     explicit constexpr Cia402Drive(const Config& config) noexcept
         : config_(config), heartbeat_(config.heartbeat_timeout_ns) {}
 
+    /// Returns the description.
+    [[nodiscard]] constexpr const Config& config() const noexcept { return config_; }
+
     /// Returns true if identifiers, lengths and signals are valid; no PDO may use an identifier that CANopen
     /// restricts.
     [[nodiscard]] constexpr bool config_is_valid() const noexcept {

@@ -54,19 +54,24 @@ struct DamiaoProtocol {
         feedback.data[0] = static_cast<std::uint8_t>(enabled << 4U | motor);
     }
 
-    /// Other modes have the identifiers motor + 0x100, 0x200 and 0x300. 0x7FF has the motor in bytes 0 and 1.
+    /// Other modes have the identifiers motor + 0x100 (position and velocity, 8 bytes), 0x200 (velocity, 4
+    /// bytes, padded to 8 by some programs) and 0x300 (position and limits, 8 bytes). These may be PDOs of
+    /// CANopen drives, too; frames of other lengths are. 0x7FF has the motor in bytes 0 and 1.
     [[nodiscard]] static constexpr MotorCommand other_command(const Frame& frame, unsigned motor) noexcept {
         if (frame.error || frame.extended || frame.remote) {
             return MotorCommand::none;
         }
         const std::uint32_t mode = frame.id - motor;
         if (mode == 0x100 || mode == 0x200 || mode == 0x300) {
-            return MotorCommand::control;
+            const bool has_length = frame.length == 8 || (mode == 0x200 && frame.length == 4);
+            return has_length ? MotorCommand::other_mode : MotorCommand::none;
         }
         if (frame.id != 0x7FF || frame.length < 4 || frame.data[0] != motor || frame.data[1] != 0) {
             return MotorCommand::none;
         }
-        return frame.data[2] == 0xCC || frame.data[2] == read ? MotorCommand::poll : MotorCommand::configure;
+        return frame.data[2] == 0xCC   ? MotorCommand::poll
+               : frame.data[2] == read ? MotorCommand::read
+                                       : MotorCommand::configure;
     }
 
   private:

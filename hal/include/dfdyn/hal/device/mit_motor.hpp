@@ -177,10 +177,12 @@ class MitMotor {
     }
 
     /// Returns true for a frame on the identifier of the feedback that is not a feedback, such as an answer
-    /// about a register.
-    [[nodiscard]] constexpr bool is_aside(const Frame& frame) const noexcept {
+    /// about a register, or a command if the motor answers on the identifier of its commands.
+    [[nodiscard]] constexpr bool carries_no_values(const Frame& frame) const noexcept {
+        const unsigned motor = Protocol::motor_of(frame);
+        const bool to_motor = answers_on_own_id() && motor != motor_id();
         return has_id(frame, config_.feedback_id) && Protocol::has_length(frame.length) &&
-               !Protocol::is_feedback(frame, Protocol::motor_of(frame));
+               (to_motor || !Protocol::is_feedback(frame, motor));
     }
 
   private:

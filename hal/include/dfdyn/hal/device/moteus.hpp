@@ -201,9 +201,22 @@ class MoteusController {
         return prefix_bits() | 0x8000U | static_cast<std::uint32_t>(config_.host) << 8U |
                static_cast<std::uint32_t>(config_.id);
     }
+    /// A host may have the number of this controller: a reply to it is no command.
     [[nodiscard]] constexpr bool is_command(const Frame& frame) const noexcept {
         return !frame.error && !frame.remote && frame.fd && frame.id >> 16U == prefix_bits() >> 16U &&
-               (frame.id & 0x7FU) == static_cast<std::uint32_t>(config_.id);
+               (frame.id & 0x7FU) == static_cast<std::uint32_t>(config_.id) && !is_reply(frame);
+    }
+
+    /// Returns true if the first sub-frame is one that only controllers send: values, an error, or the data
+    /// of a channel.
+    [[nodiscard]] static constexpr bool is_reply(const Frame& frame) noexcept {
+        for (std::size_t i = 0; i < frame.length; ++i) {
+            const unsigned code = frame.data[i];
+            if (code != 0x50) {
+                return (code >= 0x20 && code <= 0x31) || code == 0x41;
+            }
+        }
+        return false;
     }
 
     [[nodiscard]] static constexpr double physical(const MoteusSubframes::Item& item,

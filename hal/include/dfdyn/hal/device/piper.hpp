@@ -150,7 +150,7 @@ class PiperPair {
             return frame.length > 1 && frame.data[1] == 2 ? MotorCommand::enable : MotorCommand::disable;
         case 0x472:
         case 0x477:
-            return MotorCommand::poll;
+            return MotorCommand::read;
         case 0x475: // byte 1: 0xAE sets the zero; byte 5: 0xAE clears the error
             return frame.length > 1 && frame.data[1] == 0xAE   ? MotorCommand::set_zero
                    : frame.length > 5 && frame.data[5] == 0xAE ? MotorCommand::clear_faults

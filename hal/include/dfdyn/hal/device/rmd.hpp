@@ -28,13 +28,18 @@ enum class RmdPosition : std::uint8_t {
 /// - 0x140 + motor: requests and commands. 0xA1: current i16 (0.01 A) at byte 4.
 /// - 0x240 + motor: answers.
 ///   - 0x92: angle i32 (0.01 °) at byte 4. 0x60: encoder i32 (counts) at byte 4.
-///   - 0x9C, and the answers to 0xA1 … 0xA8: temperature i8, current i16 (0.01 A), speed i16 (°/s), angle i16
-///   (°).
+///   - 0x9C, answers to 0xA1 … 0xA8: temperature i8, current i16 (0.01 A), speed i16 (°/s), angle i16 (°).
 ///   - 0x9A: errors u16 at byte 6, 0: none.
+///
+/// A control answer and the 0x9C after it report one current: only the first of the two gives values.
 ///
 /// V2 drivers answer on 0x140 + motor, with a current of 33/2048 A per count. Their 0x9C contains an encoder
 /// of 16384 counts per turn instead of the angle. The angle of 0x92 has seven bytes. Requests come on the
-/// same identifier: they have zeros after the command. A command has 0 where its answer has the temperature.
+/// same identifier: they have zeros after the command.
+/// - A command 0xA1 … 0xA9 has 0 where its answer has the temperature; 0xA5 and 0xA6 have 0 or 1, the
+///   direction. So an answer at 0 °C, or one to 0xA5 or 0xA6 at 1 °C, is taken for a command, without values.
+/// - An angle of exactly 0 looks like its request. It is used, with the stamp of the next answer with a
+///   speed, if exactly two such frames, request and answer, come before that answer, and the speed is 0.
 ///
 /// An angle of 1 ° is too coarse for learning; 0x92 or 0x60 is needed. Values carry `device_fault` after an
 /// answer 0x9A with errors, until two in a row without errors. A flipped bit can turn 0x92, the answer with
@@ -72,21 +77,18 @@ class RmdMotor {
             return rejected(fault);
         }
         if (config_.driver == RmdDriver::v2 && is_request(frame)) {
+            const bool counts = is_zero_position(frame) && zero_frames_ < too_many_zeros;
+            zero_frames_ = static_cast<std::uint8_t>(zero_frames_ + (counts ? 1 : 0));
             return {};
         }
-        switch (frame.data[0]) {
-        case 0x92:
-            return config_.position == RmdPosition::multi_turn ? position(frame, angle(frame)) : Decoded{};
-        case 0x60:
-            return config_.position == RmdPosition::encoder
-                       ? position(frame, {load_little<std::int32_t>(frame.data.data() + 4),
-                                          2 * std::numbers::pi / config_.counts_per_turn})
-                       : Decoded{};
-        case 0x9A:
-            return decode_errors(frame);
-        default:
-            return is_status(frame.data[0]) ? decode_status(frame) : Decoded{};
+        if (is_position(frame.data[0])) {
+            zero_frames_ = 0;
+            return position(frame, angle(frame));
         }
+        if (frame.data[0] == 0x9A) {
+            return decode_errors(frame);
+        }
+        return is_status(frame.data[0]) ? take_status(frame) : Decoded{};
     }
 
     /// Encodes the replies 0x92 (or 0x60) and 0x9C.
@@ -153,16 +155,21 @@ class RmdMotor {
         case 0x79:
             return MotorCommand::configure;
         default:
-            return frame.data[0] >= 0xA1 && frame.data[0] <= 0xA9 ? MotorCommand::control
-                                                                  : MotorCommand::poll;
+            return is_control(frame.data[0]) ? MotorCommand::control
+                   : is_poll(frame.data[0])  ? MotorCommand::poll
+                                             : MotorCommand::read;
         }
     }
 
-    /// Returns true for a frame on the identifier of the answers that has no values: a request, or another
-    /// answer.
-    [[nodiscard]] constexpr bool is_aside(const Frame& frame) const noexcept {
-        return has_id(frame, answer_id()) && !frame.remote && frame.length == 8 &&
-               ((config_.driver == RmdDriver::v2 && is_request(frame)) || !has_values(frame.data[0]));
+    /// Returns true for a frame on the identifier of the answers that has no values: a request, another
+    /// answer, or a 0x9C after a control answer. Call it before `decode`.
+    [[nodiscard]] constexpr bool carries_no_values(const Frame& frame) const noexcept {
+        if (!has_id(frame, answer_id()) || frame.remote || frame.length != 8) {
+            return false;
+        }
+        const bool zero_answer = is_zero_position(frame) && zero_frames_ == 1 && has_status_;
+        return (config_.driver == RmdDriver::v2 && is_request(frame) && !zero_answer) ||
+               !(is_status(frame.data[0]) || is_position(frame.data[0])) || repeats_status(frame);
     }
 
   private:
@@ -172,6 +179,7 @@ class RmdMotor {
     };
 
     static constexpr std::uint8_t torque_command = 0xA1;
+    static constexpr std::uint8_t too_many_zeros = 3; ///< a request and its answer are two
     static constexpr double degree = std::numbers::pi / 180;
 
     [[nodiscard]] constexpr std::uint32_t request_id() const noexcept {
@@ -192,50 +200,65 @@ class RmdMotor {
         return config_.driver == RmdDriver::v2 ? 2 * std::numbers::pi / 16384 : degree;
     }
 
-    [[nodiscard]] constexpr bool has_values(std::uint8_t command) const noexcept {
-        return is_status(command) || (command == 0x92 && config_.position == RmdPosition::multi_turn) ||
-               (command == 0x60 && config_.position == RmdPosition::encoder);
+    /// Returns the resolution (rad) of the position, except of RmdPosition::status.
+    [[nodiscard]] constexpr double fine_step() const noexcept {
+        return config_.position == RmdPosition::encoder ? 2 * std::numbers::pi / config_.counts_per_turn
+                                                        : 0.01 * degree;
+    }
+
+    /// Returns true for the first byte of a frame with the position, or of a request for it.
+    [[nodiscard]] constexpr bool is_position(std::uint8_t command) const noexcept {
+        return config_.position != RmdPosition::status &&
+               command == (config_.position == RmdPosition::encoder ? 0x60 : 0x92);
     }
     [[nodiscard]] static constexpr bool is_status(std::uint8_t command) noexcept {
-        return command == 0x9C || (command >= 0xA1 && command <= 0xA9);
+        return command == 0x9C || is_control(command);
+    }
+    [[nodiscard]] static constexpr bool is_control(std::uint8_t command) noexcept {
+        return command >= 0xA1 && command <= 0xA9;
+    }
+    /// Returns true for a request of angles, currents or speeds.
+    [[nodiscard]] static constexpr bool is_poll(std::uint8_t command) noexcept {
+        return command == 0x60 || (command >= 0x90 && command <= 0x94) || command == 0x9C || command == 0x9D;
     }
 
     /// Returns true for a request or a command on an identifier that answers have, too.
     [[nodiscard]] static constexpr bool is_request(const Frame& frame) noexcept {
-        if (frame.data[0] >= 0xA1 && frame.data[0] <= 0xA9) {
-            return frame.data[1] == 0;
+        if (is_control(frame.data[0])) {
+            const bool has_direction = frame.data[0] == 0xA5 || frame.data[0] == 0xA6;
+            return frame.data[1] <= (has_direction ? 1 : 0);
         }
-        for (std::size_t i = 1; i < 8; ++i) {
-            if (frame.data[i] != 0) {
-                return false;
-            }
-        }
-        return true;
+        return load_little<std::uint64_t>(frame.data.data()) >> 8U == 0; // all bytes after the command
     }
 
-    /// Returns the angle of an answer 0x92.
+    /// Returns true for a request of a V2 driver's position, and for an answer of exactly 0.
+    [[nodiscard]] constexpr bool is_zero_position(const Frame& frame) const noexcept {
+        return config_.driver == RmdDriver::v2 && is_position(frame.data[0]) && is_request(frame);
+    }
+
+    /// Returns true for a 0x9C that reports the current of the control answer before it again.
+    [[nodiscard]] constexpr bool repeats_status(const Frame& frame) const noexcept {
+        return frame.data[0] == 0x9C && after_control_;
+    }
+
+    /// Returns the angle of an answer 0x92 or 0x60.
     [[nodiscard]] constexpr Angle angle(const Frame& frame) const noexcept {
-        if (config_.driver == RmdDriver::v3) {
-            return {load_little<std::int32_t>(frame.data.data() + 4), 0.01 * degree};
+        if (config_.driver == RmdDriver::v3 || config_.position == RmdPosition::encoder) {
+            return {load_little<std::int32_t>(frame.data.data() + 4), fine_step()};
         }
         const auto all = load_little<std::uint64_t>(frame.data.data()); // the command is its lowest byte
-        return {std::bit_cast<std::int64_t>(all) >> 8, 0.01 * degree};
+        return {std::bit_cast<std::int64_t>(all) >> 8, fine_step()};
     }
 
     void encode_position(double motor_rad, Frame& frame) const noexcept {
-        if (config_.position == RmdPosition::encoder) {
-            frame.data[0] = 0x60;
-            store_little(frame.data.data() + 4, saturated<std::int32_t>(motor_rad / (2 * std::numbers::pi) *
-                                                                        config_.counts_per_turn));
-            return;
-        }
-        const auto counts = saturated<std::int32_t>(motor_rad / (0.01 * degree));
-        if (config_.driver == RmdDriver::v2) {
+        const auto counts = saturated<std::int32_t>(motor_rad / fine_step());
+        const bool encoder = config_.position == RmdPosition::encoder;
+        if (config_.driver == RmdDriver::v2 && !encoder) {
             store_little(frame.data.data(), static_cast<std::int64_t>(counts) * 256);
         } else {
             store_little(frame.data.data() + 4, counts);
         }
-        frame.data[0] = 0x92;
+        frame.data[0] = encoder ? 0x60 : 0x92;
     }
 
     [[nodiscard]] constexpr Decoded values(const Frame& frame) const noexcept {
@@ -258,6 +281,22 @@ class RmdMotor {
     [[nodiscard]] constexpr Decoded position(const Frame& frame, const Angle& angle) const noexcept {
         Decoded decoded = values(frame);
         set_position(angle, decoded.joint[0]);
+        return decoded;
+    }
+
+    constexpr Decoded take_status(const Frame& frame) noexcept {
+        const bool at_zero = zero_frames_ == 2 && load_little<std::int16_t>(frame.data.data() + 4) == 0;
+        zero_frames_ = 0;
+        const bool repeats = repeats_status(frame);
+        after_control_ = frame.data[0] != 0x9C;
+        has_status_ = true;
+        if (repeats && !at_zero) {
+            return {};
+        }
+        Decoded decoded = repeats ? values(frame) : decode_status(frame);
+        if (at_zero) {
+            set_position({0, fine_step()}, decoded.joint[0]);
+        }
         return decoded;
     }
 
@@ -300,7 +339,10 @@ class RmdMotor {
 
     Config config_;
     bool faulty_ = false;
-    bool cleared_once_ = false; ///< the last answer 0x9A has no errors
+    bool cleared_once_ = false;    ///< the last answer 0x9A has no errors
+    bool after_control_ = false;   ///< the last answer with a current was to a control command
+    bool has_status_ = false;      ///< an answer with a current has arrived
+    std::uint8_t zero_frames_ = 0; ///< frames of `is_zero_position` since the last other angle or speed
 };
 
 static_assert(JointSource<RmdMotor>);

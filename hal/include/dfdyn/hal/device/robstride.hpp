@@ -108,7 +108,7 @@ class RobstrideMotor {
         switch (type(frame)) {
         case 0:
         case 17:
-            return MotorCommand::poll;
+            return MotorCommand::read;
         case control_type:
             return MotorCommand::control;
         case 3:
@@ -133,6 +133,21 @@ class RobstrideMotor {
         return is_private(frame) && type(frame) == feedback_type &&
                sender(frame) == static_cast<unsigned>(config.motor_id) &&
                target(frame) != static_cast<unsigned>(config.host_id);
+    }
+
+    /// Returns the motor that sent `frame` if it is an answer, or may be one: of types 0 and 17, requests
+    /// have the host in its place. Returns nothing for other frames.
+    [[nodiscard]] static constexpr std::optional<unsigned> answering_motor(const Frame& frame) noexcept {
+        const bool may_answer = type(frame) == 0 || type(frame) == feedback_type || type(frame) == 17;
+        return is_private(frame) && may_answer ? std::optional(sender(frame)) : std::nullopt;
+    }
+
+    /// Returns the identifier of a feedback without its mode and faults: that of a motor that runs without
+    /// faults. Returns the identifier of any other frame unchanged.
+    [[nodiscard]] static constexpr std::uint32_t stream_id(const Frame& frame) noexcept {
+        constexpr std::uint32_t state_bits = 0xFF0000;
+        return is_private(frame) && type(frame) == feedback_type ? (frame.id & ~state_bits) | run << 22U
+                                                                 : frame.id;
     }
 
   private:

@@ -25,9 +25,14 @@ struct EncoderReading {
     bool zero = false; ///< the device's number is exactly 0, which may mean that it has no position yet
 };
 
+/// Returns a time in seconds.
+[[nodiscard]] constexpr double seconds_of(std::int64_t time_ns) noexcept {
+    return 1e-9 * static_cast<double>(time_ns);
+}
+
 /// Returns the time from one stamp to another (s).
 [[nodiscard]] constexpr double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
-    return 1e-9 * static_cast<double>(to_ns - from_ns);
+    return seconds_of(to_ns - from_ns);
 }
 
 /// Moves a reading of a wrapping integer to the turn nearest to `about_rad`. Does not change a reading that
