@@ -58,9 +58,9 @@ Candidate with_fault(Candidate candidate) {
             return with_fault(right(shape, value));
         };
     }
-    if (candidate.about) {
-        candidate.about = [right = candidate.about](const EffectShape& shape,
-                                                    const Eigen::VectorXd& coefficients) {
+    if (candidate.relinearized_at) {
+        candidate.relinearized_at = [right = candidate.relinearized_at](const EffectShape& shape,
+                                                                        const Eigen::VectorXd& coefficients) {
             return with_fault(right(shape, coefficients));
         };
     }
@@ -81,8 +81,9 @@ class BrokenScan : public EffectScan {
     std::vector<Candidate> candidates(const FittedResidual& residual) const override {
         return with_fault(right_->candidates(residual));
     }
-    void set_prices(const std::vector<Candidate*>& own, const FittedResidual& residual) const override {
-        right_->set_prices(own, residual);
+    void set_evidence_offsets(const std::vector<Candidate*>& own,
+                              const FittedResidual& residual) const override {
+        right_->set_evidence_offsets(own, residual);
     }
 
   private:

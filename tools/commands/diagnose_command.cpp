@@ -21,7 +21,7 @@
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
 #include "tools/diagnosis/output/error_sections.hpp"
 #include "tools/diagnosis/recordings/diagnose_recordings.hpp"
-#include "tools/training/physics/torque_constants.hpp"
+#include "tools/robot/identification/torque_gains.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -81,7 +81,7 @@ DiagnosisOptions diagnosis_options(const DiagnoseOptions& options, OutputKind ou
 std::optional<TrainedModel> make_model(const DiagnosisWork& work, const ModelExtension& extension,
                                        const std::vector<Recording>& recordings,
                                        const DiagnoseOptions& options, const Robot& robot) {
-    if (!answered(work)) {
+    if (!effects_fitted(work)) {
         return std::nullopt;
     }
     const Progress progress("building the extended model", 0);
@@ -101,7 +101,8 @@ void for_each_export(const DiagnoseOptions& options, const Use& use) {
 }
 
 void add_exports(const DiagnoseOptions& options, const ModelExtension& extension, FileSet& files) {
-    const RobotExport corrected = options.formats.empty() ? RobotExport{} : corrected_robot(extension);
+    const RobotExport corrected =
+        options.formats.empty() ? RobotExport{} : corrected_robot(extension, options.formats);
     for_each_export(options, [&](const RobotFormat& format, const std::filesystem::path& file) {
         files.add(file, format.text(corrected));
     });
@@ -169,7 +170,7 @@ int run(const DiagnoseOptions& options) {
     check_folders(options);
     const DiagnosisWork work =
         diagnose_recordings(robot, recordings, diagnosis_options(options, outputs), !options.changed.empty());
-    const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
+    const ModelExtension extension = effects_fitted(work) ? extension_of(work) : ModelExtension{};
     const std::optional<TrainedModel> model = make_model(work, extension, recordings, options, robot);
     const OnlineView online = model ? online_view(work, extension, *model, recordings) : OnlineView{};
     const nlohmann::ordered_json findings = diagnosis_json(work.diagnosis);
@@ -178,7 +179,7 @@ int run(const DiagnoseOptions& options) {
     files.add(options.findings(), json_text(findings) + '\n');
     files.add(options.page(), diagnosis_page({robot, recordings, work, extension, online,
                                               options.curves().filename().string()}));
-    if (answered(work)) {
+    if (effects_fitted(work)) {
         write_comparison_csv(files.add(options.curves()), work);
     }
     remove_earlier(options, model.has_value(), files);

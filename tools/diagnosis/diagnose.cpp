@@ -9,8 +9,8 @@
 #include "tools/diagnosis/verdict/plausibility.hpp"
 #include "tools/diagnosis/verdict/textbook_findings.hpp"
 #include "tools/diagnosis/verdict/unexplained.hpp"
+#include "tools/robot/identification/torque_gains.hpp"
 #include "tools/setup_check/setup_check.hpp"
-#include "tools/training/physics/torque_constants.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -48,7 +48,7 @@ bool suspect(Diagnosis& diagnosis, std::vector<Suspicion> suspicions) {
 void fit(DiagnosisWork& work, const FitOptions& how) {
     const DiagnosisSignals& signals = *work.signals;
     work.fitted_effects = find_effects(signals, work.measured, how);
-    work.rest = work.measured - signals.nominal - work.fitted_effects.all(signals);
+    work.rest = work.measured - signals.nominal - work.fitted_effects.total_contribution(signals);
     work.pushes = stationary_contacts(signals, work.fitted_effects, work.measured, work.rest);
     for (const StationaryContact& push : work.pushes) {
         work.rest.col(static_cast<Eigen::Index>(push.joint)) -= push.share;
@@ -58,28 +58,15 @@ void fit(DiagnosisWork& work, const FitOptions& how) {
 } // namespace
 
 Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOptions& options) {
-    Eigen::VectorXd gains = Eigen::VectorXd::Ones(signals.outputs());
-    if (options.outputs != OutputKind::motor_current) {
-        return gains;
-    }
-    if (options.torque_gains.size() > 0) {
+    if (options.outputs == OutputKind::motor_current && options.torque_gains.size() > 0) {
         return options.torque_gains;
     }
-    if (!options.torque_constants.empty()) {
-        return Eigen::Map<const Eigen::VectorXd>(options.torque_constants.data(), gains.size())
-            .cwiseInverse();
-    }
-    TrainingData data;
-    data.positions = signals.measured.motion.position;
-    data.velocities = signals.measured.motion.velocity;
-    data.accelerations = signals.measured.motion.acceleration;
-    data.outputs = signals.measured.outputs;
-    const std::vector<TorqueGain> found =
-        estimate_torque_gains(signals.robot, data, signals.sign_velocity.maxCoeff());
-    for (Eigen::Index joint = 0; joint < gains.size(); ++joint) {
-        gains[joint] = found[static_cast<std::size_t>(joint)].gain;
-    }
-    return gains;
+    const auto recorded = [&] { return RecordedMotion{signals.measured.motion, signals.measured.outputs}; };
+    const std::vector<double> gains =
+        output_gains(torque_gains(signals.robot, options.outputs, options.torque_constants, recorded,
+                                  signals.sign_velocity.maxCoeff()),
+                     static_cast<std::size_t>(signals.outputs()));
+    return Eigen::Map<const Eigen::VectorXd>(gains.data(), signals.outputs());
 }
 
 bool refuses_setup(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {

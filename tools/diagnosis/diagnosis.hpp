@@ -42,9 +42,9 @@ struct Suspicion {
 };
 
 /// Upper frequency limit for the error that a cause reduces.
-inline constexpr double gains_below_hz = 5;
+inline constexpr double reduction_below_hz = 5;
 /// Share of rows in standstill above which errors are also reported without these rows.
-inline constexpr double noticeable_standing = 0.02;
+inline constexpr double noticeable_standstill = 0.02;
 
 /// A parameter in one of several recordings, with its 95 % interval.
 struct ValueOfRecording {
@@ -111,10 +111,10 @@ struct Diagnosis {
     /// Per output: plain least squares is the extended model, because its error is smaller than that of the
     /// causes.
     std::vector<bool> by_least_squares;
-    Eigen::VectorXd standing_share; ///< m: share of these rows that `moving_nrmse` excludes
+    Eigen::VectorXd standstill_share; ///< m: share of these rows that `moving_nrmse` excludes
     double heldout_from_s = 0, heldout_to_s = 0;
     std::vector<std::string> recordings; ///< names of several that were fitted together; else empty
-    std::vector<Finding> findings;       ///< in descending order of gain
+    std::vector<Finding> findings;       ///< in descending order of error reduction
     std::vector<NuisanceEstimate> nuisance_estimates;
     std::vector<Unexplained> unexplained;
 };
@@ -160,8 +160,8 @@ struct DiagnosisWork {
     bool gains_known = true; ///< torques were measured, or the torque constants of currents are given
 };
 
-/// Returns whether the recording is suitable: effects were fitted, and an extended model can be made.
-inline bool answered(const DiagnosisWork& work) {
+/// Returns whether effects were fitted, so that an extended model can be made: the recording is suitable.
+inline bool effects_fitted(const DiagnosisWork& work) {
     return work.signals != nullptr && !work.fitted_effects.candidates.empty();
 }
 

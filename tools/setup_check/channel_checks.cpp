@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/checks.hpp"
 
+#include "tools/base/numerics/quantile.hpp"
 #include "tools/base/numerics/quantum.hpp"
 #include "tools/base/recording/columns_matrix.hpp"
 #include "tools/base/recording/stretches.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,10 +24,6 @@ namespace {
 
 constexpr std::size_t fewest_samples = 20;
 constexpr double noticeable_travel = 0.1; ///< rad (m)
-
-double cell(const Columns& columns, std::size_t row, std::size_t index) {
-    return columns.values[row * columns.names.size() + index];
-}
 
 bool constant(const Columns& columns, std::size_t index) { return !(travel(columns, index) > 0); }
 
@@ -66,7 +64,7 @@ std::vector<Run> runs_of(const Recording& recording, std::size_t output, std::si
     for (std::size_t row = 0; row < recording.row_count();) {
         std::size_t last = row + 1;
         while (last < recording.row_count() && recording.gap_before[last] == 0 &&
-               cell(recording.output, last, output) == cell(recording.output, row, output)) {
+               recording.output.row(last)[output] == recording.output.row(row)[output]) {
             ++last;
         }
         if (last - row >= shortest) {
@@ -78,41 +76,13 @@ std::vector<Run> runs_of(const Recording& recording, std::size_t output, std::si
 }
 
 double travel_in(const Recording& recording, const Run& run, std::size_t joint) {
-    double least = cell(recording.position, run.first, joint);
+    double least = recording.position.row(run.first)[joint];
     double largest = least;
     for (std::size_t row = run.first; row < run.first + run.count; ++row) {
-        least = std::min(least, cell(recording.position, row, joint));
-        largest = std::max(largest, cell(recording.position, row, joint));
+        least = std::min(least, recording.position.row(row)[joint]);
+        largest = std::max(largest, recording.position.row(row)[joint]);
     }
     return largest - least;
-}
-
-/// Detects outputs that are constant for 2 s while their joint moves, but vary elsewhere. In 10 s for outputs
-/// of coarse steps, which friction at a steady speed may keep constant.
-SetupFindings check_frozen_outputs(const Recording& recording, OutputKind outputs) {
-    constexpr double longest_fine_s = 2, longest_coarse_s = 10;
-    SetupFindings findings;
-    const Columns& columns = recording.output;
-    for (std::size_t output = 0; outputs != OutputKind::wrench && output < columns.names.size(); ++output) {
-        if (constant(columns, output)) {
-            continue;
-        }
-        const double longest_s = coarse(recording, output) ? longest_coarse_s : longest_fine_s;
-        for (const Run& run : runs_of(recording, output, fewest_samples)) {
-            const double from_s = recording.time_s[run.first];
-            const double to_s = recording.time_s[run.first + run.count - 1];
-            if (to_s - from_s > longest_s && travel_in(recording, run, output) > noticeable_travel) {
-                findings.push_back(
-                    {SetupFault::dead_output, Severity::mistake, columns.names[output],
-                     "column " + columns.names[output] + ": expected values that vary, found " +
-                         number_text(cell(columns, run.first, output)) +
-                         " in every row from t = " + instant_text(from_s) + " to " + instant_text(to_s) +
-                         ": a dead channel; check its sensor, or use --rows"});
-                break;
-            }
-        }
-    }
-    return findings;
 }
 
 /// Number of rows in which an output is at an end of its range, and near it.
@@ -126,7 +96,7 @@ Limit limit_of(const Recording& recording, std::size_t output, double end, doubl
     constexpr double moving = 5e-3; // rad (m) within a run
     Limit limit{end, 0, 0};
     for (const Run& run : runs_of(recording, output, shortest)) {
-        if (cell(recording.output, run.first, output) != end) {
+        if (recording.output.row(run.first)[output] != end) {
             continue;
         }
         for (std::size_t joint = 0; joint < recording.joint_count(); ++joint) {
@@ -137,10 +107,137 @@ Limit limit_of(const Recording& recording, std::size_t output, double end, doubl
         }
     }
     for (std::size_t row = 0; row < recording.row_count(); ++row) {
-        const double distance = std::abs(cell(recording.output, row, output) - end);
+        const double distance = std::abs(recording.output.row(row)[output] - end);
         limit.near += distance > 0 && distance < 0.02 * range ? 1 : 0;
     }
     return limit;
+}
+
+struct Range {
+    double low = 0, high = 0;
+};
+
+Range range_of(const Recording& recording, std::size_t output) {
+    Range range{recording.output.row(0)[output], recording.output.row(0)[output]};
+    for (std::size_t row = 0; row < recording.row_count(); ++row) {
+        range.low = std::min(range.low, recording.output.row(row)[output]);
+        range.high = std::max(range.high, recording.output.row(row)[output]);
+    }
+    return range;
+}
+
+bool saturated(const Limit& limit) {
+    constexpr std::size_t fewest = 10;
+    return limit.at >= fewest && limit.at > limit.near;
+}
+
+/// Returns whether a saturated output reaches the value of a run from nearby. The value of a dead channel can
+/// also be the largest or smallest, but the output sizes to it.
+bool clipped(const Recording& recording, std::size_t output, const Run& run) {
+    constexpr double nearby = 0.1; // of the range
+    const Range range = range_of(recording, output);
+    const double value = recording.output.row(run.first)[output];
+    if (value != range.low && value != range.high) {
+        return false;
+    }
+    const std::size_t after = run.first + run.count;
+    const double before_run = run.first > 0 ? recording.output.row(run.first - 1)[output] : value;
+    const double after_run = after < recording.row_count() ? recording.output.row(after)[output] : value;
+    const double step = std::max(std::abs(before_run - value), std::abs(after_run - value));
+    return step < nearby * (range.high - range.low) &&
+           saturated(limit_of(recording, output, value, range.high - range.low));
+}
+
+/// Detects outputs that are constant for 2 s while their joint moves, but vary elsewhere. In 10 s for outputs
+/// of coarse steps, which friction at a steady speed may keep constant.
+SetupFindings check_frozen_outputs(const Recording& recording, OutputKind outputs) {
+    constexpr double longest_fine_s = 2, longest_coarse_s = 10;
+    SetupFindings findings;
+    const Columns& columns = recording.output;
+    for (std::size_t output = 0; outputs != OutputKind::wrench && output < columns.names.size(); ++output) {
+        if (constant(columns, output)) {
+            continue;
+        }
+        const bool steps = coarse(recording, output); // no saturation is recognised in these
+        const double longest_s = steps ? longest_coarse_s : longest_fine_s;
+        for (const Run& run : runs_of(recording, output, fewest_samples)) {
+            const double from_s = recording.time_s[run.first];
+            const double to_s = recording.time_s[run.first + run.count - 1];
+            if (to_s - from_s > longest_s && travel_in(recording, run, output) > noticeable_travel &&
+                (steps || !clipped(recording, output, run))) {
+                findings.push_back(
+                    {SetupFault::dead_output, Severity::mistake, columns.names[output],
+                     "column " + columns.names[output] + ": expected values that vary, found " +
+                         number_text(columns.row(run.first)[output]) +
+                         " in every row from t = " + instant_text(from_s) + " to " + instant_text(to_s) +
+                         ": a dead channel; check its sensor, or use --rows"});
+                break;
+            }
+        }
+    }
+    return findings;
+}
+
+/// Rows `first` to `last` (excluded) that repeat all positions and outputs.
+struct Filler {
+    std::size_t first = 0, last = 0;
+};
+
+bool repeats(const Recording& recording, std::size_t row) {
+    const auto same = [&](const Columns& columns) {
+        return std::ranges::equal(columns.row(row), columns.row(row - 1));
+    };
+    return recording.gap_before[row] == 0 && same(recording.position) && same(recording.output);
+}
+
+std::vector<Filler> filler_of(const Recording& recording) {
+    constexpr double shortest_s = 0.2;
+    constexpr std::size_t fewest = 5;
+    std::vector<Filler> result;
+    for (std::size_t first = 0; first < recording.row_count();) {
+        std::size_t last = first + 1;
+        while (last < recording.row_count() && repeats(recording, last)) {
+            ++last;
+        }
+        if (last - first >= fewest && recording.time_s[last - 1] - recording.time_s[first] >= shortest_s) {
+            result.push_back({first, last});
+        }
+        first = last;
+    }
+    return result;
+}
+
+/// Returns the magnitudes of the steps to each row from the one before, without those across gaps (0).
+std::vector<double> steps_of(const Recording& recording, std::size_t joint) {
+    std::vector<double> steps(recording.row_count(), 0);
+    for (std::size_t row = 1; row < recording.row_count(); ++row) {
+        if (recording.gap_before[row] == 0) {
+            steps[row] =
+                std::abs(recording.position.row(row)[joint] - recording.position.row(row - 1)[joint]);
+        }
+    }
+    return steps;
+}
+
+/// Returns the filler next to which the joint jumps, from the magnitudes of its steps.
+std::optional<Filler> filler_with_jump(const std::vector<Filler>& fillers, std::vector<double> steps) {
+    constexpr double of_largest = 3;
+    constexpr double of_median = 10; // encoders of coarse steps may rest for long before each step
+    constexpr double least = 0.02;   // rad (m)
+    std::vector<double> moving;
+    std::ranges::copy_if(steps, std::back_inserter(moving), [](double step) { return step > 0; });
+    const double usual = moving.empty() ? 0 : of_median * median(std::move(moving));
+    std::vector<double> sizes; // the larger one of each filler
+    for (const Filler& filler : fillers) {
+        sizes.push_back(std::max(steps[filler.first], steps[filler.last % steps.size()])); // none at row 0
+    }
+    for (const Filler& filler : fillers) {
+        steps[filler.first] = steps[filler.last % steps.size()] = 0;
+    }
+    const double large = std::max({of_largest * std::ranges::max(steps), usual, least});
+    const auto jump = std::ranges::find_if(sizes, [&](double one) { return one > large; });
+    return jump == sizes.end() ? std::nullopt
+                               : std::optional(fillers[static_cast<std::size_t>(jump - sizes.begin())]);
 }
 
 } // namespace
@@ -167,29 +264,23 @@ SetupFindings check_dead_outputs(const Recording& recording, OutputKind outputs,
         findings.push_back({SetupFault::dead_output, certain ? Severity::mistake : Severity::warning,
                             columns.names[output],
                             "column " + columns.names[output] + ": expected values that vary, found " +
-                                number_text(cell(columns, 0, output)) +
+                                number_text(columns.row(0)[output]) +
                                 " in every row: a dead channel; check its sensor and its name"});
     }
     return findings;
 }
 
 SetupFindings check_saturated_outputs(const Recording& recording, OutputKind outputs) {
-    constexpr std::size_t fewest = 10;
     SetupFindings findings;
     const Columns& columns = recording.output;
     for (std::size_t output = 0; outputs != OutputKind::wrench && output < columns.names.size(); ++output) {
         if (constant(columns, output) || coarse(recording, output)) {
             continue;
         }
-        double low = cell(columns, 0, output);
-        double high = low;
-        for (std::size_t row = 0; row < recording.row_count(); ++row) {
-            low = std::min(low, cell(columns, row, output));
-            high = std::max(high, cell(columns, row, output));
-        }
-        for (const double end : {low, high}) {
-            const Limit limit = limit_of(recording, output, end, high - low);
-            if (limit.at >= fewest && limit.at > limit.near) {
+        const Range range = range_of(recording, output);
+        for (const double end : {range.low, range.high}) {
+            const Limit limit = limit_of(recording, output, end, range.high - range.low);
+            if (saturated(limit)) {
                 findings.push_back(
                     {SetupFault::saturated_output, Severity::mistake, columns.names[output],
                      "column " + columns.names[output] +
@@ -202,6 +293,25 @@ SetupFindings check_saturated_outputs(const Recording& recording, OutputKind out
         }
     }
     return findings;
+}
+
+SetupFindings check_filler_rows(const Recording& recording) {
+    if (recording.row_count() < fewest_samples || !recording.output.present()) {
+        return {};
+    }
+    const std::vector<Filler> fillers = filler_of(recording);
+    for (std::size_t joint = 0; joint < recording.joint_count() && !fillers.empty(); ++joint) {
+        if (const auto filler = filler_with_jump(fillers, steps_of(recording, joint))) {
+            return {{SetupFault::dead_output, Severity::mistake, listed(recording.output.names),
+                     "columns " + listed(recording.position.names) + ", " + listed(recording.output.names) +
+                         ": expected measurements, found equal rows from t = " +
+                         instant_text(recording.time_s[filler->first]) + " to " +
+                         instant_text(recording.time_s[filler->last - 1]) + " and a jump of " +
+                         recording.position.names[joint] +
+                         ": the recorder stopped; delete these rows, or use --rows"}};
+        }
+    }
+    return {};
 }
 
 SetupFindings check_quantised_positions(const Recording& recording) {
@@ -220,105 +330,6 @@ SetupFindings check_quantised_positions(const Recording& recording) {
         }
     }
     return findings;
-}
-
-namespace {
-
-/// Deviation of a row's positions from the cubic through its four neighbours, and its slope there.
-struct Deviation {
-    double of_position = 0, slope = 0;
-};
-
-Deviation deviation(const Recording& recording, std::size_t row, std::size_t joint) {
-    double predicted = 0;
-    double slope = 0;
-    const double time_s = recording.time_s[row];
-    for (std::size_t i : {row - 2, row - 1, row + 1, row + 2}) {
-        double weight = 1;
-        double derivative = 0; // of the logarithm of the weight
-        for (std::size_t j : {row - 2, row - 1, row + 1, row + 2}) {
-            if (i != j) {
-                weight *= (time_s - recording.time_s[j]) / (recording.time_s[i] - recording.time_s[j]);
-                derivative += 1 / (time_s - recording.time_s[j]);
-            }
-        }
-        predicted += weight * cell(recording.position, i, joint);
-        slope += weight * derivative * cell(recording.position, i, joint);
-    }
-    return {cell(recording.position, row, joint) - predicted, slope};
-}
-
-/// The common time error of the moving joints, over all rows.
-struct StampError {
-    double squares_s2 = 0, rows = 0;
-    double total = 0,
-           left = 0; ///< squared deviations of the positions, before and after a common time error
-
-    void add(const std::vector<Deviation>& joints) {
-        double product = 0;
-        double square = 0;
-        for (const Deviation& one : joints) {
-            product += one.of_position * one.slope;
-            square += one.slope * one.slope;
-        }
-        const double error_s = product / square;
-        for (const Deviation& one : joints) {
-            total += one.of_position * one.of_position;
-            left += std::pow(one.of_position - error_s * one.slope, 2);
-        }
-        squares_s2 += error_s * error_s;
-        rows += 1;
-    }
-    double rms_s() const {
-        constexpr double of_neighbours =
-            1.9; // variance of a deviation, relative to the variance of one row's error
-        return std::sqrt(squares_s2 / rows / of_neighbours);
-    }
-};
-
-StampError stamp_error(const Recording& recording) {
-    constexpr double moving = 0.05; // rad/s (m/s)
-    StampError error;
-    for (std::size_t row = 2; row + 2 < recording.row_count(); ++row) {
-        const auto at = recording.gap_before.begin() + static_cast<std::ptrdiff_t>(row);
-        if (std::any_of(at - 1, at + 3, [](auto gap) { return gap != 0; })) {
-            continue;
-        }
-        std::vector<Deviation> joints;
-        for (std::size_t joint = 0; joint < recording.joint_count(); ++joint) {
-            if (const Deviation one = deviation(recording, row, joint); std::abs(one.slope) > moving) {
-                joints.push_back(one);
-            }
-        }
-        if (joints.size() > 1) {
-            error.add(joints);
-        }
-    }
-    return error;
-}
-
-} // namespace
-
-SetupFindings check_stamps(const Recording& recording) {
-    constexpr double most_of_step = 0.15;
-    constexpr double least_explained = 0.95;
-    constexpr double fewest = 100;
-    constexpr double longest_step_s = 0.025; // longer steps do not determine the motion between the rows
-    const double step_s = median_step_s(recording);
-    if (!(step_s < longest_step_s)) {
-        return {};
-    }
-    const StampError error = stamp_error(recording);
-    if (error.rows < fewest || !(error.left < (1 - least_explained) * error.total) ||
-        error.rms_s() < most_of_step * step_s) {
-        return {};
-    }
-    return {{SetupFault::clock, Severity::mistake, "t",
-             "column t: expected the instants at which the positions were measured, found positions of all "
-             "joints that are early or late by " +
-                 rounded_text(1e3 * error.rms_s()) + " ms (rms) with rows " + rounded_text(1e3 * step_s) +
-                 " ms apart: rounded or late time stamps; record t with more digits, or number the rows and "
-                 "multiply by the step"}};
 }
 
 } // namespace dfdyn::tools

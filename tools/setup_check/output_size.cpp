@@ -7,8 +7,11 @@
 #include "tools/setup_check/signed_fit.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -20,6 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double most_torque_constant = 500; ///< N·m/A at a joint, behind its gear
+constexpr double largest_gear_ratio = 300;
 
 /// Returns the ratio of an output to the rigid body's, as a magnitude; empty if the rigid body explains too
 /// little.
@@ -36,6 +40,16 @@ std::optional<double> size_of(const ArmRecording& arm, const RigidParts& parts, 
         }
     }
     return std::nullopt;
+}
+
+std::vector<double> known(const OutputSizes& sizes) {
+    std::vector<double> result;
+    for (const std::optional<double>& size : sizes) {
+        if (size) {
+            result.push_back(*size);
+        }
+    }
+    return result;
 }
 
 std::string unit_text(const ArmRecording& arm, double factor) {
@@ -55,31 +69,63 @@ std::string unit_text(const ArmRecording& arm, double factor) {
            "; convert it (--units)";
 }
 
+/// For torques between those of the motors and those of the joints.
+std::string other_scale_text(const ArmRecording& arm, double factor) {
+    const bool current = arm.kind == OutputKind::motor_current;
+    return "columns " + listed(arm.recording.output.names) +
+           ": expected outputs of the robot's model, found " + rounded_text(factor) +
+           " times those, with the same shape over time: " +
+           (factor > 1
+                ? std::string(current ? "torque constants" : "another unit, such as kgf·cm or lbf·in") +
+                      ", a payload that the robot's file lacks, rotors (screws) whose inertia it lacks, or "
+                      "masses in it that are too small"
+                : std::string(current ? "torque constants of the motors"
+                                      : "torques of the motors (multiply them by the gear ratios)") +
+                      ", another unit, or masses in the robot's file that are too large");
+}
+
+/// Returns whether the shape of an output is that of gravity and the joint moves. Without gravity a rotor can
+/// make an output many times as large as the links do.
+bool shows_gravity(const ArmRecording& arm, const RigidParts& parts, Index k) {
+    constexpr double least_share = 0.1; // of the largest deviation of gravity
+    const auto deviation = [](const auto& column) {
+        return (column.array() - column.mean()).matrix().norm();
+    };
+    double largest = 0;
+    for (const auto column : parts.gravity.colwise()) {
+        largest = std::max(largest, deviation(column));
+    }
+    const double weight = deviation(parts.gravity.col(k));
+    return weight > least_share * largest && weight > deviation(parts.inertia.col(k)) &&
+           swings(arm.recorded.motion, k, 1);
+}
+
 std::string heavy_text(const ArmRecording& arm, double factor) {
     return "columns " + listed(arm.recording.output.names) +
            ": expected outputs of the robot's model, found " + rounded_text(factor) +
            (arm.gains_known ? " times those" : " A per N·m of the model") +
            ", with the same shape over time: the robot's masses look like grams; divide the masses and "
-           "inertias in its "
-           "file by 1000";
+           "inertias in its file by 1000";
 }
 
 } // namespace
 
-SetupFindings check_output_size(const ArmRecording& arm) {
-    const RigidParts parts = rigid_parts(arm.robot, arm.kind, arm.recorded.motion);
-    std::vector<double> sizes;
+OutputSizes output_sizes(const ArmRecording& arm, const RigidParts& parts) {
+    OutputSizes sizes;
     for (Index k = 0; k < arm.counted(); ++k) {
-        if (const auto size = size_of(arm, parts, k)) {
-            sizes.push_back(*size);
-        }
+        sizes.push_back(size_of(arm, parts, k));
     }
-    if (sizes.empty()) {
+    return sizes;
+}
+
+SetupFindings check_output_size(const ArmRecording& arm, const OutputSizes& sizes) {
+    std::vector<double> values = known(sizes);
+    if (values.empty()) {
         return {};
     }
-    const auto [least, largest] = std::ranges::minmax(sizes);
-    const bool several = sizes.size() > 1 && largest < 10 * least && !arm.wrench();
-    const double factor = median(std::move(sizes));
+    const auto [least, largest] = std::ranges::minmax(values);
+    const bool several = values.size() > 1 && largest < 10 * least && !arm.wrench();
+    const double factor = median(std::move(values));
     const double too_large = arm.gains_known ? (several ? 50.0 : 300.0) : (several ? 50.0 : 200.0);
     const double too_small = 1 / (arm.gains_known ? too_large : most_torque_constant);
     if (factor < too_large && factor > too_small) {
@@ -89,10 +135,41 @@ SetupFindings check_output_size(const ArmRecording& arm) {
     const bool certain = several || arm.wrench() || arm.counted() == 1 || factor < too_small;
     const Severity severity = certain ? Severity::mistake : Severity::warning;
     const std::string columns = listed(arm.recording.output.names);
-    if (factor < too_small && !arm.wrench()) {
-        return {{SetupFault::wrong_robot, severity, columns, heavy_text(arm, factor)}};
+    if (factor > too_small || arm.wrench()) {
+        return {{SetupFault::output_unit, severity, columns, unit_text(arm, factor)}};
     }
-    return {{SetupFault::output_unit, severity, columns, unit_text(arm, factor)}};
+    if (arm.gains_known && factor * largest_gear_ratio > 1) {
+        return {{SetupFault::output_unit, severity, columns, other_scale_text(arm, factor)}};
+    }
+    return {{SetupFault::wrong_robot, severity, columns, heavy_text(arm, factor)}};
+}
+
+SetupFindings check_output_scale(const ArmRecording& arm, const RigidParts& parts, const OutputSizes& sizes) {
+    constexpr double suspicious = 8; // a gear ratio or a unit: errors of masses are smaller
+    if (!arm.gains_known || arm.wrench()) {
+        return {};
+    }
+    OutputSizes by_gravity; // a rotor that the file lacks can dominate the other joints
+    for (Index k = 0; k < arm.counted(); ++k) {
+        if (shows_gravity(arm, parts, k)) {
+            by_gravity.push_back(sizes[static_cast<std::size_t>(k)]);
+        }
+    }
+    std::vector<double> values = known(by_gravity);
+    if (values.empty()) {
+        values = known(sizes);
+    }
+    const double factor = values.empty() ? 1 : median(std::move(values));
+    if (factor < suspicious && factor > 1 / suspicious) {
+        return {};
+    }
+    const auto agree = std::ranges::count_if(by_gravity, [&](const std::optional<double>& size) {
+        return size && *size > factor / 2 && *size < 2 * factor;
+    });
+    // a payload can make outputs of the joints near the tip too large, but none too small
+    const bool certain = factor < 1 && agree > 1 && 2 * agree > std::ssize(by_gravity);
+    return {{SetupFault::output_unit, certain ? Severity::mistake : Severity::warning,
+             listed(arm.recording.output.names), other_scale_text(arm, factor)}};
 }
 
 } // namespace dfdyn::tools

@@ -5,8 +5,11 @@
 #include "tools/base/recording/stretches.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
+#include "tools/setup_check/setup_check.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -20,7 +23,6 @@ constexpr double two_turns = 4 * std::numbers::pi;
 // Clock: recordings are expected to have 50 Hz to 5 kHz, with steps of 0.2 to 20 in milliseconds.
 constexpr double suspicious_step_s = 0.19;
 constexpr double certain_step_s = 2;
-constexpr double shortest_step_s = 2e-5;
 constexpr double slowest_joint = 0.03; ///< rad/s: 30 rad/s in milliseconds
 constexpr double fastest_joint = 60;   ///< rad/s
 
@@ -28,22 +30,13 @@ constexpr double most_ampere = 1000;
 constexpr double most_whole_ampere = 200;
 constexpr double most_torque = 2e4; ///< N·m
 
-double value(const Columns& columns, std::size_t row, std::size_t index) {
-    return columns.values[row * columns.names.size() + index];
-}
-
-double duration_s(const Recording& recording, std::size_t row) {
-    return 1e-9 * static_cast<double>(recording.time_ns[row] - recording.time_ns[row - 1]);
-}
-
 /// Returns the 99 % quantile of a joint's speed, per second; 0 for too few rows.
 double speed_quantile(const Recording& recording, std::size_t joint) {
     std::vector<double> speeds;
     for (std::size_t row = 1; row < recording.row_count(); ++row) {
         if (recording.gap_before[row] == 0) {
-            const double step =
-                value(recording.position, row, joint) - value(recording.position, row - 1, joint);
-            speeds.push_back(std::abs(step) / duration_s(recording, row));
+            const double step = recording.position.row(row)[joint] - recording.position.row(row - 1)[joint];
+            speeds.push_back(std::abs(step) / time_step_s(recording, row));
         }
     }
     return speeds.empty() ? 0 : quantile(std::move(speeds), 0.99);
@@ -76,10 +69,10 @@ std::string clock_unit(double step) {
 std::vector<std::size_t> jumps(const Recording& recording, std::size_t joint, double turn, double longest_s) {
     std::vector<std::size_t> rows;
     const auto step = [&](std::size_t row) {
-        return std::abs(value(recording.position, row, joint) - value(recording.position, row - 1, joint));
+        return std::abs(recording.position.row(row)[joint] - recording.position.row(row - 1)[joint]);
     };
     const auto joined = [&](std::size_t row) {
-        return recording.gap_before[row] == 0 && duration_s(recording, row) < longest_s;
+        return recording.gap_before[row] == 0 && time_step_s(recording, row) < longest_s;
     };
     const auto jump = [&](std::size_t row) { return std::abs(step(row) - turn) < 0.03 * turn; };
     const auto quiet = [&](std::size_t row) { return step(row) < 0.1 * turn || jump(row); };
@@ -100,30 +93,62 @@ std::string names_of(const Columns& columns, const std::vector<std::size_t>& ind
     return listed(names);
 }
 
+/// Returns the largest magnitude that a joint's limits allow; 0 for placeholders (0 to 0) and continuous
+/// joints.
+double largest_limit(const RobotJoint& joint) {
+    return joint.lower ? std::max(std::abs(*joint.lower), std::abs(*joint.upper)) : 0;
+}
+
+/// Returns whether a joint can reach a position by its file: a continuous joint, or one within its limits.
+bool reaches(const RobotJoint& joint, double magnitude) {
+    return !joint.lower || magnitude <= largest_limit(joint);
+}
+
 struct BeyondLimits {
     std::vector<std::size_t> joints;
-    double factor = 0; ///< largest
-    bool certain = false;
+    double factor = 0;               ///< largest
+    double turning = 0, sliding = 0; ///< largest, of joints that are certainly in another unit
+    bool certain() const { return turning > 0 || sliding > 0; }
 };
 
-/// Placeholder limits (0 to 0) and continuous joints have no limits.
 BeyondLimits beyond_limits(const Recording& recording, const Robot& robot) {
     constexpr double tolerance = 1.2;
     constexpr double another_unit = 5; // above any error of an encoder's zero
     BeyondLimits result;
     for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
         const RobotJoint& one = robot.joints[joint];
-        const double limit = one.lower ? std::max(std::abs(*one.lower), std::abs(*one.upper)) : 0;
+        const double limit = largest_limit(one);
         const double largest = largest_magnitude(recording.position, joint);
         const double ratio = limit > 0 ? largest / (tolerance * limit) : 0;
         if (ratio > 1) {
             result.joints.push_back(joint);
             result.factor = std::max(result.factor, ratio);
-            const bool far = largest > (one.prismatic ? 5 : two_turns);
-            result.certain = result.certain || (ratio > another_unit && far);
+        }
+        if (ratio > another_unit && largest > (one.prismatic ? 5 : two_turns)) {
+            double& of_type = one.prismatic ? result.sliding : result.turning;
+            of_type = std::max(of_type, ratio);
         }
     }
     return result;
+}
+
+/// Joints of one type have one unit.
+std::string other_units(const Recording& recording, const Robot& robot, const BeyondLimits& beyond) {
+    const bool degrees = beyond.turning < 2 * degrees_per_radian;
+    std::vector<JointUnit> units;
+    for (const RobotJoint& joint : robot.joints) {
+        const bool other = (joint.prismatic ? beyond.sliding : beyond.turning) > 0;
+        units.push_back(!other                        ? JointUnit::si
+                        : degrees && !joint.prismatic ? JointUnit::degrees
+                                                      : JointUnit::thousandths);
+    }
+    const std::string turning = degrees ? "degrees" : "thousandths (mrad)";
+    const std::string sliding = "thousandths (mm)";
+    return (beyond.sliding == 0 ? "expected rad, found what looks like " + turning
+            : beyond.turning == 0
+                ? "expected m, found what looks like " + sliding
+                : "expected rad and m, found what looks like " + turning + " and " + sliding) +
+           "; " + position_remedy(recording, robot, units);
 }
 
 SetupFindings check_limits(const Recording& recording, const Robot& robot) {
@@ -131,14 +156,24 @@ SetupFindings check_limits(const Recording& recording, const Robot& robot) {
     if (beyond.joints.empty()) {
         return {};
     }
-    std::string text = "positions of joint " + counted_from_one(beyond.joints) + " are up to " +
-                       rounded_text(beyond.factor) + " times beyond the joints' limits: ";
-    text += !beyond.certain ? "another zero, other limits or another robot"
-            : beyond.factor > 2 * degrees_per_radian
-                ? "expected rad (m), found what looks like thousandths (mrad, mm); " + unit_remedy("q", "mm")
-                : "expected rad, found what looks like degrees; " + unit_remedy("q", "deg");
-    return {{SetupFault::position_unit, beyond.certain ? Severity::mistake : Severity::warning,
-             names_of(recording.position, beyond.joints), std::move(text)}};
+    return {{SetupFault::position_unit, beyond.certain() ? Severity::mistake : Severity::warning,
+             names_of(recording.position, beyond.joints),
+             "positions of joint " + counted_from_one(beyond.joints) + " are up to " +
+                 rounded_text(beyond.factor) + " times beyond the joints' limits: " +
+                 (beyond.certain() ? other_units(recording, robot, beyond)
+                                   : "another zero, other limits or another robot")}};
+}
+
+/// Upper bound of the magnitudes (N·m, N) that gravity causes in a robot's outputs.
+double largest_weight(const Robot& robot) {
+    constexpr double gravity = 9.81;
+    double mass = 0;
+    double reach = 1 + robot.tip_placement.translation().norm();
+    for (const RobotJoint& joint : robot.joints) {
+        mass += joint.inertia[0];
+        reach += joint.placement.translation().norm() + (joint.prismatic ? largest_limit(joint) : 0);
+    }
+    return gravity * mass * std::max(1.0, reach);
 }
 
 } // namespace
@@ -153,6 +188,34 @@ std::string unit_remedy(const std::string& quantity, const std::string& unit) {
             : unit == "ns" ? "1e9"
                            : "1000") +
            option;
+}
+
+std::string position_remedy(const Recording& recording, const Robot& robot,
+                            const std::vector<JointUnit>& units) {
+    std::vector<std::string> degrees;
+    std::vector<std::string> thousandths;
+    std::vector<std::string> options;
+    for (std::size_t joint = 0; joint < units.size(); ++joint) {
+        const std::string& column = recording.position.names[joint];
+        if (units[joint] == JointUnit::degrees) {
+            degrees.push_back(column);
+            options.emplace_back("deg");
+        } else if (units[joint] == JointUnit::thousandths) {
+            thousandths.push_back(column);
+            options.emplace_back(robot.joints[joint].prismatic ? "mm" : "mrad");
+        } else {
+            options.emplace_back(robot.joints[joint].prismatic ? "m" : "rad");
+        }
+    }
+    if (std::ranges::count(options, options.front()) == std::ssize(options)) {
+        return unit_remedy("q", options.front());
+    }
+    std::string text = degrees.empty() ? "" : "multiply " + listed(degrees) + " by pi/180, ";
+    text += thousandths.empty() ? "" : "divide " + listed(thousandths) + " by 1000, ";
+    for (const std::string& option : options) {
+        text += (&option == &options.front() ? "or --units 'q=" : "|") + option;
+    }
+    return text + "'";
 }
 
 double travel(const Columns& columns, std::size_t index) {
@@ -193,13 +256,16 @@ SetupFindings check_clock(const Recording& recording) {
     return {};
 }
 
-SetupFindings check_wrapping(const Recording& recording) {
+SetupFindings check_wrapping(const Recording& recording, const Robot* robot) {
     SetupFindings findings;
     if (recording.row_count() < 4) {
         return findings;
     }
     const double longest_s = 3 * median_step_s(recording);
     for (std::size_t joint = 0; joint < recording.joint_count(); ++joint) {
+        if (robot != nullptr && robot->joints[joint].prismatic) {
+            continue;
+        }
         for (const double turn : {2 * std::numbers::pi, 360.0}) {
             const std::vector<std::size_t> rows = jumps(recording, joint, turn, longest_s);
             if (!rows.empty()) {
@@ -217,7 +283,8 @@ SetupFindings check_wrapping(const Recording& recording) {
     return findings;
 }
 
-SetupFindings check_output_unit(const Recording& recording, OutputKind outputs) {
+SetupFindings check_output_unit(const Recording& recording, OutputKind outputs, const Robot* robot) {
+    constexpr double of_weight = 20; // milli-newton metres are 1000 times as large
     const std::vector<double>& values = recording.output.values;
     if (values.empty() || outputs == OutputKind::wrench) {
         return {};
@@ -230,7 +297,8 @@ SetupFindings check_output_unit(const Recording& recording, OutputKind outputs) 
     }
     const double largest = quantile(std::move(magnitudes), 0.999);
     const bool current = outputs == OutputKind::motor_current;
-    const bool certain = largest > (current ? most_ampere : most_torque);
+    const double heavy = robot == nullptr ? 0 : of_weight * largest_weight(*robot);
+    const bool certain = largest > (current ? most_ampere : std::max(most_torque, heavy));
     if (!certain && !(current && whole && largest > most_whole_ampere)) {
         return {};
     }
@@ -243,25 +311,31 @@ SetupFindings check_output_unit(const Recording& recording, OutputKind outputs) 
 }
 
 SetupFindings check_position_unit(const Recording& recording, const Robot* robot) {
-    SetupFindings findings;
-    if (robot != nullptr && robot->joints.size() == recording.joint_count()) {
-        findings = check_limits(recording, *robot);
-    }
+    SetupFindings findings = robot == nullptr ? SetupFindings{} : check_limits(recording, *robot);
     std::vector<std::string> beyond;
+    std::size_t limited = 0; // joints that cannot turn so far
     double largest = 0;
     for (std::size_t joint = 0; joint < recording.joint_count(); ++joint) {
         const double magnitude = largest_magnitude(recording.position, joint);
-        if (magnitude > two_turns) {
+        const RobotJoint* const one = robot == nullptr ? nullptr : &robot->joints[joint];
+        if (magnitude > two_turns && (one == nullptr || !one->prismatic)) {
             beyond.push_back(recording.position.names[joint]);
+            limited += one == nullptr || !reaches(*one, magnitude) ? 1 : 0;
             largest = std::max(largest, magnitude);
         }
     }
-    if (any_mistake(findings) || beyond.size() < 3 || 2 * beyond.size() < recording.joint_count()) {
+    const auto enough = [&](std::size_t count) { return count >= 3 && 2 * count >= recording.joint_count(); };
+    if (any_mistake(findings) || !enough(beyond.size())) {
         return findings;
     }
-    return {{SetupFault::position_unit, Severity::mistake, listed(beyond),
+    return {{SetupFault::position_unit, enough(limited) ? Severity::mistake : Severity::warning,
+             listed(beyond),
              "columns " + listed(beyond) + ": expected rad, found up to " + rounded_text(largest) +
-                 ": looks like degrees; " + unit_remedy("q", "deg")}};
+                 ": looks like degrees" +
+                 (enough(limited)
+                      ? ""
+                      : " unless the continuous joints, or those within their limits, turn several times") +
+                 "; " + unit_remedy("q", "deg")}};
 }
 
 } // namespace dfdyn::tools

@@ -2,8 +2,9 @@
 #include "tools/setup_check/rigid_comparison.hpp"
 
 #include "tools/base/recording/stretches.hpp"
-#include "tools/base/text/error.hpp"
+#include "tools/robot/dynamics/friction_direction.hpp"
 #include "tools/robot/firmware_chain.hpp"
+#include "tools/robot/inertia.hpp"
 #include "tools/robot/regressor.hpp"
 #include "tools/setup_check/signed_fit.hpp"
 
@@ -53,11 +54,6 @@ Recording thinned(const Recording& recording, std::size_t stride) {
     return result;
 }
 
-MatrixXd outputs_of(const Robot& robot, OutputKind kind, const RobotMotion& motion) {
-    const VectorXd outputs = stacked_regressor(robot, kind, motion) * nominal_parameters(robot, kind);
-    return unstacked(outputs, outputs.size() / motion.rows());
-}
-
 /// Sets rounding errors to zero, so that they are not taken for a signal.
 MatrixXd without_rounding(const MatrixXd& part, double largest) {
     return (part.array().abs() > 1e-9 * largest).select(part, 0);
@@ -65,7 +61,7 @@ MatrixXd without_rounding(const MatrixXd& part, double largest) {
 
 } // namespace
 
-std::optional<RecordedMotion> checked_motion(const Recording& recording) {
+std::optional<CheckedMotion> checked_motion(const Recording& recording) {
     if (recording.row_count() < static_cast<std::size_t>(fewest_rows)) {
         return std::nullopt;
     }
@@ -73,26 +69,29 @@ std::optional<RecordedMotion> checked_motion(const Recording& recording) {
     const auto stride = static_cast<std::size_t>(std::max(1.0, std::round(row_step_s / step_s)));
     const int half_width = static_cast<int>(
         std::clamp(std::round(half_window_s / (step_s * static_cast<double>(stride))), 2.0, 6.0));
-    const Recording thin = thinned(recording, stride);
-    RecordedMotion recorded;
-    try {
-        recorded = recorded_motion({&thin, 1}, {half_width, 3});
-    } catch (const InputError&) { // no row with derivatives
-        return std::nullopt;
+    const SampledMotion sampled = sampled_motion(thinned(recording, stride), {half_width, 3});
+    std::vector<Index> valid;
+    for (std::size_t row = 0; row < sampled.valid.size(); ++row) {
+        if (sampled.valid[row] != 0) {
+            valid.push_back(static_cast<Index>(row));
+        }
     }
-    const Index rows = recorded.motion.rows();
+    const Index rows = std::ssize(valid);
     if (rows < fewest_rows) {
         return std::nullopt;
     }
     const Index count = std::min(rows, most_rows);
+    CheckedMotion result;
     std::vector<Index> kept;
     for (Index i = 0; i < count; ++i) {
-        kept.push_back((2 * i + 1) * rows / (2 * count));
+        kept.push_back(valid[static_cast<std::size_t>((2 * i + 1) * rows / (2 * count))]);
+        result.rows.push_back(static_cast<std::size_t>(kept.back()) * stride);
     }
-    const RobotMotion& motion = recorded.motion;
-    return RecordedMotion{{motion.position(kept, Eigen::all), motion.velocity(kept, Eigen::all),
-                           motion.acceleration(kept, Eigen::all)},
-                          recorded.outputs(kept, Eigen::all)};
+    const RobotMotion& motion = sampled.all.motion;
+    result.recorded = {{motion.position(kept, Eigen::all), motion.velocity(kept, Eigen::all),
+                        motion.acceleration(kept, Eigen::all)},
+                       sampled.all.outputs(kept, Eigen::all)};
+    return result;
 }
 
 namespace {
@@ -108,17 +107,20 @@ double heaviest_payload(const Robot& robot) {
     return std::max(share * mass, std::min(of_light_arm_kg, mass));
 }
 
-/// `regressor`: of the last link's mass and first moments at standstill, stacked, 4 columns.
-std::vector<MatrixXd> loaded_gravity(const Robot& robot, const MatrixXd& gravity, const MatrixXd& regressor) {
+/// `regressor`: of the last link along the motion, stacked, 10 columns. The payloads differ in their first
+/// moments only, so that a sum with nonnegative factors is a payload between the corners. Their moments of
+/// inertia are those of a point mass at the tip: the factor of the arm's inertia makes up for more.
+std::vector<MatrixXd> loaded_outputs(const Robot& robot, const MatrixXd& gravity, const MatrixXd& regressor) {
     constexpr double reach = 0.15; // m, along each axis of the last link
     const double mass = heaviest_payload(robot);
+    const Eigen::Vector3d tip = robot.tip_placement.translation();
+    InertialParameters payload = body_parameters(mass, tip, Eigen::Matrix3d::Zero());
     std::vector<MatrixXd> result;
     for (const double x : {-reach, reach}) {
         for (const double y : {-reach, reach}) {
             for (const double z : {-reach, reach}) {
-                const Eigen::Vector3d centre = robot.tip_placement.translation() + Eigen::Vector3d(x, y, z);
-                const VectorXd torque = mass * (regressor.col(0) + regressor.rightCols<3>() * centre).eval();
-                result.push_back(gravity + unstacked(torque, gravity.cols()));
+                payload.segment<3>(1) = mass * (tip + Eigen::Vector3d(x, y, z));
+                result.push_back(gravity + unstacked(regressor * payload, gravity.cols()));
             }
         }
     }
@@ -131,15 +133,16 @@ RigidParts rigid_parts(const Robot& robot, OutputKind kind, const RobotMotion& m
     RobotMotion stationary = motion;
     stationary.velocity.setZero();
     stationary.acceleration.setZero();
-    const MatrixXd regressor = stacked_regressor(robot, kind, stationary);
-    const VectorXd stacked = regressor * nominal_parameters(robot, kind);
-    const MatrixXd gravity = unstacked(stacked, stacked.size() / motion.rows());
-    const MatrixXd inertia = outputs_of(robot, kind, motion) - gravity;
+    const VectorXd nominal = nominal_parameters(robot, kind);
+    const MatrixXd regressor = stacked_regressor(robot, kind, motion);
+    const VectorXd at_rest = stacked_regressor(robot, kind, stationary) * nominal;
+    const MatrixXd gravity = unstacked(at_rest, at_rest.size() / motion.rows());
+    const MatrixXd inertia = unstacked(regressor * nominal, gravity.cols()) - gravity;
     const double largest = std::max(gravity.cwiseAbs().maxCoeff(), inertia.cwiseAbs().maxCoeff());
     RigidParts parts{without_rounding(gravity, largest), without_rounding(inertia, largest), {}};
     if (kind != OutputKind::wrench) {
-        parts.loaded_gravity = loaded_gravity(robot, parts.gravity, regressor.rightCols<10>().leftCols<4>());
-        for (MatrixXd& loaded : parts.loaded_gravity) {
+        parts.loaded = loaded_outputs(robot, parts.gravity, regressor.rightCols<10>());
+        for (MatrixXd& loaded : parts.loaded) {
             loaded = without_rounding(loaded, largest);
         }
     }
@@ -148,7 +151,7 @@ RigidParts rigid_parts(const Robot& robot, OutputKind kind, const RobotMotion& m
 
 VectorXd friction_direction(const VectorXd& velocity) {
     const double turning = std::max(2e-3, 0.03 * velocity.cwiseAbs().maxCoeff());
-    return (velocity.array() / turning).tanh();
+    return friction_direction(velocity, turning);
 }
 
 MatrixXd friction_columns(const RobotMotion& motion, Index joint) {
@@ -241,11 +244,11 @@ MatrixXd expected_columns(const ArmRecording& arm, const RobotMotion& motion, co
     if (arm.wrench()) {
         return parts.sum(k);
     }
-    const auto loads = std::ssize(parts.loaded_gravity);
+    const auto loads = std::ssize(parts.loaded);
     MatrixXd columns(motion.rows(), 4 + loads);
     columns.leftCols<4>() << parts.gravity.col(k), parts.inertia.col(k), friction_columns(motion, k);
     for (Index load = 0; load < loads; ++load) {
-        columns.col(4 + load) = parts.loaded_gravity[static_cast<std::size_t>(load)].col(k);
+        columns.col(4 + load) = parts.loaded[static_cast<std::size_t>(load)].col(k);
     }
     return columns;
 }

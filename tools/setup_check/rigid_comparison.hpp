@@ -7,15 +7,22 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 namespace dfdyn::tools {
 
+/// Rows of a recording with derivatives.
+struct CheckedMotion {
+    RecordedMotion recorded;
+    std::vector<std::size_t> rows; ///< the recording's row of each state, T
+};
+
 /// Returns rows of a recording with derivatives, T of them: at least about 10 ms apart, at most 1,000, evenly
 /// spread. Velocities and accelerations are computed from the positions (zero phase), even if the recording
 /// has such columns. Returns nothing if fewer than 100 rows have derivatives.
-std::optional<RecordedMotion> checked_motion(const Recording& recording);
+std::optional<CheckedMotion> checked_motion(const Recording& recording);
 
 /// The measured outputs of a moving arm, and the robot of the set-up.
 struct ArmRecording {
@@ -37,9 +44,9 @@ struct ArmRecording {
 struct RigidParts {
     Eigen::MatrixXd gravity; ///< torque at standstill at each position
     Eigen::MatrixXd inertia; ///< additional torque of the motion
-    /// Gravity with the heaviest plausible payload at each corner of a cube of 0.3 m
+    /// Gravity, and gravity and inertia of the heaviest plausible payload at each corner of a cube of 0.3 m
     /// around the tip: 8 matrices, none for a wrench.
-    std::vector<Eigen::MatrixXd> loaded_gravity;
+    std::vector<Eigen::MatrixXd> loaded;
 
     Eigen::VectorXd sum(Eigen::Index k) const { return gravity.col(k) + inertia.col(k); }
 };
@@ -66,7 +73,7 @@ bool swings(const RobotMotion& motion, Eigen::Index joint, int turns);
 inline constexpr int certain_turns = 4;
 
 /// Returns the columns whose sum with nonnegative factors should be output `k`: the rigid body's for a
-/// wrench; for a joint's output gravity, without and with payloads, inertia and friction.
+/// wrench; for a joint's output gravity, gravity with payloads, inertia and friction.
 Eigen::MatrixXd expected_columns(const ArmRecording& arm, const RobotMotion& motion, const RigidParts& parts,
                                  Eigen::Index k);
 

@@ -73,7 +73,7 @@ VectorXd deviations(const MatrixXd& columns) {
 
 } // namespace
 
-SetupFindings check_robot_match(const ArmRecording& arm) {
+SetupFindings check_robot_match(const ArmRecording& arm, const RigidParts& parts) {
     constexpr double least_gravity_share = 0.1; // of the largest deviation of gravity
     constexpr double least_share = 0.01;
     constexpr double least_log_ratio = 1.2;
@@ -83,7 +83,6 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
         return {};
     }
     const RobotMotion& motion = arm.recorded.motion;
-    const RigidParts parts = rigid_parts(arm.robot, arm.kind, motion);
     const VectorXd weight = deviations(parts.gravity);
     const MatrixXd smooth = smooth_columns(motion);
     std::vector<std::string> columns;

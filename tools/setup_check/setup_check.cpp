@@ -19,24 +19,36 @@ void append(SetupFindings& findings, SetupFindings&& more) {
 }
 
 /// Returns the finding of the first check with one, because later checks would report the same mistake
-/// differently.
+/// differently, and a common delay, which can be the reason for it.
 SetupFindings check_by_robot(const Recording& recording, const SetupQuestion& question,
-                             RecordedMotion recorded) {
+                             CheckedMotion checked) {
     const bool current = question.outputs == OutputKind::motor_current;
     const bool gains_known = !current || !question.torque_constants.empty();
     if (current && gains_known) {
-        recorded.outputs *=
-            Eigen::Map<const Eigen::VectorXd>(question.torque_constants.data(), recorded.outputs.cols())
-                .asDiagonal();
+        Eigen::MatrixXd& outputs = checked.recorded.outputs;
+        outputs *=
+            Eigen::Map<const Eigen::VectorXd>(question.torque_constants.data(), outputs.cols()).asDiagonal();
     }
-    const ArmRecording arm{*question.robot, recording, question.outputs, std::move(recorded), gains_known};
-    SetupFindings findings = check_output_size(arm);
+    const ArmRecording arm{*question.robot, recording, question.outputs, std::move(checked.recorded),
+                           gains_known};
+    const RigidParts parts = rigid_parts(arm.robot, arm.kind, arm.recorded.motion);
+    const OutputSizes sizes = output_sizes(arm, parts);
+    SetupFindings findings = check_output_size(arm, sizes);
     if (findings.empty()) {
-        append(findings, check_readings(arm));
+        append(findings, check_readings(arm, parts));
     }
     if (findings.empty()) {
-        append(findings, check_robot_match(arm));
+        append(findings, check_robot_match(arm, parts));
+        if (!findings.empty()) {
+            if (SetupFindings zeros = check_zeros(arm, parts); !zeros.empty()) {
+                findings = std::move(zeros);
+            }
+        }
     }
+    if (findings.empty()) {
+        append(findings, check_output_scale(arm, parts, sizes));
+    }
+    append(findings, check_output_delay(arm, parts, checked.rows));
     return findings;
 }
 
@@ -52,11 +64,15 @@ bool robot_fits(const Recording& recording, const SetupQuestion& question) {
 } // namespace
 
 SetupFindings check_setup(const Recording& recording, const SetupQuestion& question) {
+    const bool same_joints =
+        question.robot != nullptr && question.robot->joints.size() == recording.joint_count();
+    const Robot* const robot = same_joints ? question.robot : nullptr;
     SetupFindings findings = check_clock(recording);
-    append(findings, check_wrapping(recording));
-    append(findings, check_position_unit(recording, question.robot));
+    append(findings, check_wrapping(recording, robot));
+    append(findings, check_position_unit(recording, robot));
+    append(findings, check_filler_rows(recording));
     append(findings, check_dead_outputs(recording, question.outputs, question.robot));
-    append(findings, check_output_unit(recording, question.outputs));
+    append(findings, check_output_unit(recording, question.outputs, robot));
     append(findings, check_saturated_outputs(recording, question.outputs));
     if (!any_mistake(findings)) {
         append(findings, check_stamps(recording));
@@ -64,19 +80,19 @@ SetupFindings check_setup(const Recording& recording, const SetupQuestion& quest
     if (any_mistake(findings)) {
         return findings;
     }
-    const auto recorded = checked_motion(recording);
-    if (!recorded) {
+    const auto checked = checked_motion(recording);
+    if (!checked) {
         return findings;
     }
-    append(findings, check_degrees_by_gravity(recording, *recorded));
+    append(findings, check_degrees_by_gravity(recording, checked->recorded));
     if (!any_mistake(findings)) {
         append(findings, check_quantised_positions(recording));
     }
     if (!any_mistake(findings) && robot_fits(recording, question)) {
-        append(findings, check_by_robot(recording, question, *recorded));
+        append(findings, check_by_robot(recording, question, *checked));
     }
     if (!any_mistake(findings)) {
-        append(findings, check_friction_sign(recording, *recorded, question.outputs));
+        append(findings, check_friction_sign(recording, checked->recorded, question.outputs));
     }
     return findings;
 }

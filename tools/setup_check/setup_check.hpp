@@ -9,6 +9,9 @@
 
 namespace dfdyn::tools {
 
+/// Minimum time step between rows (s). Shorter steps indicate a wrong unit of time.
+inline constexpr double shortest_step_s = 2e-5;
+
 /// Known facts of a recording's set-up.
 struct SetupQuestion {
     OutputKind outputs = OutputKind::joint_torque;

@@ -50,8 +50,7 @@ inline tools::FittedEffects fitted_effects_of(const std::vector<tools::Candidate
             fitted_effects.chosen.push_back({i, 0});
         }
     }
-    fitted_effects.problem.sums = {columns.transpose() * columns, columns.transpose() * unexplained,
-                                   unexplained.squaredNorm()};
+    fitted_effects.problem.sums = {columns.transpose() * columns, columns.transpose() * unexplained};
     fitted_effects.fit = tools::fit_effects(fitted_effects.problem, fitted_effects.chosen);
     fitted_effects.named = tools::fit_effects(fitted_effects.problem, fitted_effects.named_effects());
     fitted_effects.values = fitted_effects.named;

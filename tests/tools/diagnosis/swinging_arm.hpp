@@ -3,8 +3,8 @@
 #pragma once
 
 #include "tests/support/catch.hpp"
-#include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/signals/signals.hpp"
 
 #include <algorithm>
 #include <string>

@@ -82,7 +82,7 @@ TEST_CASE("angles wrapped at half a turn are reported with column and time in ra
                 q[i] = std::remainder(q[i] * turn / (2 * pi) + 0.4 * turn, turn);
             }
         });
-        const SetupFindings findings = check_wrapping(wrapped);
+        const SetupFindings findings = check_wrapping(wrapped, nullptr);
         REQUIRE(findings.size() == 2);
         CHECK(findings[0].severity == Severity::mistake);
         CHECK_THAT(findings[0].text, ContainsSubstring("column q1: expected a continuous angle") &&
@@ -94,19 +94,19 @@ TEST_CASE("angles wrapped at half a turn are reported with column and time in ra
 TEST_CASE("several turns or fast motion or a gap are not reported as wrapping") {
     Recording turning = swinging();
     change_positions(turning, [](double* q) { q[0] *= 20; });
-    CHECK(check_wrapping(turning).empty());
+    CHECK(check_wrapping(turning, nullptr).empty());
     Recording gap = swinging();
     for (std::size_t i = 2 * std::size_t{1000}; i < gap.position.values.size(); ++i) {
         gap.position.values[i] += 2 * pi;
     }
-    CHECK(check_wrapping(gap).size() == 2);
+    CHECK(check_wrapping(gap, nullptr).size() == 2);
     Recording marked = gap;
     marked.gap_before[1000] = 1;
-    CHECK(check_wrapping(marked).empty());
+    CHECK(check_wrapping(marked, nullptr).empty());
     for (std::size_t row = 1000; row < gap.row_count(); ++row) { // a gap of ten seconds
         gap.time_ns[row] += 10'000'000'000;
     }
-    CHECK(check_wrapping(gap).empty());
+    CHECK(check_wrapping(gap, nullptr).empty());
 }
 
 TEST_CASE("a constant output is a dead channel if its joint moves and other outputs vary") {
@@ -136,6 +136,12 @@ TEST_CASE("outputs in steps of more than 1 % of their range are neither saturate
     });
     CHECK(check_saturated_outputs(rounded, OutputKind::motor_current).empty());
     CHECK(check_dead_outputs(rounded, OutputKind::motor_current, nullptr).empty());
+    Recording stuck = rounded;
+    for (std::size_t row = 471; row < 1885; ++row) { // from peak to peak, 14 s
+        stuck.output.values[2 * row] = 7.5;
+    }
+    check_single(check_dead_outputs(stuck, OutputKind::motor_current, nullptr), Severity::mistake,
+                 "column tau1: expected values that vary, found 7.5 in every row from t");
     for (std::size_t row = 500; row < 800; ++row) { // 3 s
         rounded.output.values[2 * row] = 2.5;
     }
@@ -163,23 +169,25 @@ TEST_CASE("a joint that moves no mass has no dead output") {
 
 TEST_CASE("impossibly large outputs are mA or mN·m and whole numbers above 200 are a warning") {
     Recording current = swinging(100, 1.2, "i");
-    CHECK(check_output_unit(current, OutputKind::motor_current).empty());
+    CHECK(check_output_unit(current, OutputKind::motor_current, nullptr).empty());
     for (double& value : current.output.values) {
         value *= 1000;
     }
-    check_single(check_output_unit(current, OutputKind::motor_current), Severity::mistake,
+    check_single(check_output_unit(current, OutputKind::motor_current, nullptr), Severity::mistake,
                  "columns i1, i2: expected A, found up to 7.5e+03: looks like mA; divide by 1000");
     for (double& value : current.output.values) {
         value = std::round(0.04 * value);
     }
-    check_single(check_output_unit(current, OutputKind::motor_current), Severity::warning, "looks like mA");
+    check_single(check_output_unit(current, OutputKind::motor_current, nullptr), Severity::warning,
+                 "looks like mA");
     current.output.values[0] += 0.5; // 300.5 A is possible for a press
-    CHECK(check_output_unit(current, OutputKind::motor_current).empty());
+    CHECK(check_output_unit(current, OutputKind::motor_current, nullptr).empty());
     Recording torque = swinging();
     for (double& value : torque.output.values) {
         value *= 10000;
     }
-    check_single(check_output_unit(torque, OutputKind::joint_torque), Severity::mistake, "looks like mN·m");
+    check_single(check_output_unit(torque, OutputKind::joint_torque, nullptr), Severity::mistake,
+                 "looks like mN·m");
 }
 
 /// Two joints with limits, or continuous joints.
@@ -197,15 +205,9 @@ TEST_CASE("positions far beyond the joint limits are degrees or thousandths") {
     const Robot robot = with_limits(-3, 3);
     CHECK(check_position_unit(swinging(), &robot).empty());
     Recording degrees = swinging();
-    change_positions(degrees, [](double* q) {
-        q[0] *= 180 / pi;
-        q[1] *= 180 / pi;
-    });
+    scale(degrees.position, 180 / pi);
     check_single(check_position_unit(degrees, &robot), Severity::mistake, "looks like degrees");
-    change_positions(degrees, [](double* q) {
-        q[0] *= 1000 * pi / 180;
-        q[1] *= 1000 * pi / 180;
-    });
+    scale(degrees.position, 1000 * pi / 180);
     check_single(check_position_unit(degrees, &robot), Severity::mistake, "looks like thousandths");
 }
 
@@ -222,6 +224,125 @@ TEST_CASE("meaningless joint limits do not cause a rejection") {
     CHECK(check_position_unit(swinging(), &placeholder).empty());
     const Robot narrow = with_limits(-0.1, 0.1);
     CHECK_FALSE(any_mistake(check_position_unit(swinging(), &narrow)));
+}
+
+/// Two joints of which the second slides, with limits of 3 rad and 6 m.
+Robot turning_and_sliding() {
+    Robot robot = with_limits(-3, 3);
+    robot.joints[1].prismatic = true;
+    robot.joints[1].lower = -6;
+    robot.joints[1].upper = 6;
+    return robot;
+}
+
+TEST_CASE("slides in millimetres are named with one unit per joint and are never wrapped") {
+    const Robot robot = turning_and_sliding();
+    Recording millimetres = swinging();
+    change_positions(millimetres, [](double* q) { q[1] = 360 + 370 * std::sin(20 * q[1]); });
+    const SetupFindings sliding = check_position_unit(millimetres, &robot);
+    check_single(sliding, Severity::mistake, "expected m, found what looks like thousandths (mm)");
+    CHECK_THAT(sliding[0].text, ContainsSubstring("divide q2 by 1000, or --units 'q=rad|mm'"));
+    change_positions(millimetres, [](double* q) { q[0] *= 180 / pi; });
+    check_single(check_position_unit(millimetres, &robot), Severity::mistake,
+                 "multiply q1 by pi/180, divide q2 by 1000, or --units 'q=deg|mm'");
+    Recording jumping = swinging();
+    for (std::size_t row = 1000; row < jumping.row_count(); ++row) {
+        jumping.position.values[2 * row + 1] += 360;
+    }
+    CHECK(check_wrapping(jumping, nullptr).size() == 1);
+    CHECK(check_wrapping(jumping, &robot).empty());
+}
+
+TEST_CASE("continuous joints of a robot may turn several times") {
+    Recording turning = swinging();
+    turning.position.names = joint_names("q", 4); // as two rows of four joints
+    turning.position.values.insert(turning.position.values.end(), turning.position.values.begin(),
+                                   turning.position.values.end());
+    change_positions(turning, [](double* q) { std::for_each_n(q, 4, [](double& one) { one *= 20; }); });
+    check_single(check_position_unit(turning, nullptr), Severity::mistake, "looks like degrees");
+    Robot robot;
+    robot.joints.resize(4);
+    check_single(check_position_unit(turning, &robot), Severity::warning, "unless the continuous joints");
+    for (RobotJoint& joint : robot.joints) {
+        joint.lower = joint.upper = 0.0; // placeholders
+    }
+    CHECK(any_mistake(check_position_unit(turning, &robot)));
+    Robot wide = with_limits(-100, 100);
+    wide.joints.resize(4, wide.joints.front());
+    check_single(check_position_unit(turning, &wide), Severity::warning, "or those within their limits");
+}
+
+TEST_CASE("torques of a heavy arm are not taken for mN·m") {
+    Recording heavy = swinging();
+    for (double& torque : heavy.output.values) {
+        torque *= 5000;
+    }
+    Robot robot = with_limits(-3, 3);
+    check_single(check_output_unit(heavy, OutputKind::joint_torque, &robot), Severity::mistake, "mN·m");
+    for (RobotJoint& joint : robot.joints) {
+        joint.inertia = body_parameters(500, {1, 0, 0}, Eigen::Matrix3d::Identity());
+        joint.placement.translation() = Eigen::Vector3d::UnitX();
+    }
+    CHECK(check_output_unit(heavy, OutputKind::joint_torque, &robot).empty());
+    for (double& torque : heavy.output.values) {
+        torque *= 1000;
+    }
+    check_single(check_output_unit(heavy, OutputKind::joint_torque, &robot), Severity::mistake, "mN·m");
+}
+
+/// Repeats a row in the rows from `first` to `last` (excluded), with all values times `factor`.
+Recording with_filler(Recording recording, std::size_t first, std::size_t last, double factor = 1) {
+    for (Columns* const columns : {&recording.position, &recording.output}) {
+        for (std::size_t row = first; row < last; ++row) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                columns->values[2 * row + k] = factor * columns->values[2 * first + k];
+            }
+        }
+    }
+    return recording;
+}
+
+TEST_CASE("equal rows before or after a jump are the filler of a stopped recorder") {
+    CHECK(check_filler_rows(swinging()).empty());
+    const Recording frozen = with_filler(with_filler(swinging(), 700, 1000), 1300, 1400);
+    check_single(check_filler_rows(frozen), Severity::mistake, "found equal rows from t = 7");
+    check_single(check_filler_rows(with_filler(swinging(), 0, 200, 0)), Severity::mistake,
+                 "found equal rows from t = 0");
+    check_single(check_filler_rows(with_filler(swinging(), 1900, 2000, 0)), Severity::mistake,
+                 "the recorder stopped");
+    Recording gap = with_filler(swinging(), 700, 1000);
+    gap.gap_before[1000] = 1;
+    CHECK(check_filler_rows(gap).empty());
+}
+
+TEST_CASE("an arm that rests between slow coarse steps is no filler") {
+    Recording stepping = swinging(100, 0.02);
+    const auto round = [](double step) {
+        return [step](double* x) {
+            std::for_each_n(x, 2, [&](double& one) { one = step * std::round(one / step); });
+        };
+    };
+    change_positions(stepping, round(0.05)); // each value for more than a second
+    change_outputs(stepping, round(5));
+    CHECK(check_filler_rows(stepping).empty());
+    Recording resting = swinging(); // 2 s of rest in each turn
+    change_positions(resting, [](double* q) {
+        std::for_each_n(q, 2, [](double& one) { one = std::clamp(one, -0.2, 0.3); });
+    });
+    change_outputs(resting, [](double* tau) { tau[0] = tau[1] = 1; });
+    CHECK(check_filler_rows(resting).empty());
+}
+
+TEST_CASE("an output at its limit for seconds is saturated and not dead") {
+    Recording clipped = swinging(100, 0.3); // turns take 19 s
+    change_outputs(clipped, [](double* tau) { tau[1] = std::min(tau[1], 3.0); });
+    CHECK(check_dead_outputs(clipped, OutputKind::joint_torque, nullptr).empty());
+    CHECK(any_mistake(check_saturated_outputs(clipped, OutputKind::joint_torque)));
+    for (std::size_t row = 0; row < 400; ++row) { // dead at an extreme value
+        clipped.output.values[2 * row] = 30;
+    }
+    check_single(check_dead_outputs(clipped, OutputKind::joint_torque, nullptr), Severity::mistake,
+                 "column tau1: expected values that vary, found 30 in every row from t");
 }
 
 } // namespace recording_checks_test

@@ -27,12 +27,16 @@ Recording currents(const std::string& file) {
 }
 
 /// The texts of all mistakes, one per line.
-std::string mistakes_in(const Recording& recording, const SetupQuestion& question) {
+std::string mistakes_of(const SetupFindings& findings) {
     std::string texts;
-    for (const SetupFinding& finding : check_setup(recording, question)) {
+    for (const SetupFinding& finding : findings) {
         texts += finding.severity == Severity::mistake ? finding.text + "\n" : "";
     }
     return texts;
+}
+
+std::string mistakes_in(const Recording& recording, const SetupQuestion& question) {
+    return mistakes_of(check_setup(recording, question));
 }
 
 TEST_CASE("a correct recording is accepted however it is cut with and without a robot") {
@@ -59,10 +63,12 @@ TEST_CASE("no part of a short recording with uneven steps is taken for another r
     }
 }
 
-/// Checks correct recordings of random arms, motions and loads.
+/// Checks correct recordings of random arms, motions and loads: no mistake, and few warnings.
 void check_right_runs(int count, std::mt19937_64& engine) {
     const std::vector<Robot> robots{ur5(), small_arm(), planar_arm(0), planar_arm(9.81), icub_right_arm(),
                                     tx40()};
+    constexpr double most_warned = 0.3; // far above the usual 6 %
+    int warned = 0;
     for (int run = 0; run < count; ++run) {
         const Robot& robot = robots[engine() % robots.size()];
         const OutputKind outputs = engine() % 3 == 0 && robot.sensor ? OutputKind::wrench
@@ -71,9 +77,13 @@ void check_right_runs(int count, std::mt19937_64& engine) {
         const RunKind kind = random_kind(robot, outputs, engine);
         const Recording recording = simulated_run(robot, kind, engine);
         CAPTURE(run, robot.name, kind.describe());
-        CHECK(mistakes_in(recording, {outputs}) == "");
-        CHECK(mistakes_in(recording, {outputs, &robot}) == "");
+        for (const SetupQuestion& question : {SetupQuestion{outputs}, SetupQuestion{outputs, &robot}}) {
+            const SetupFindings findings = check_setup(recording, question);
+            CHECK(mistakes_of(findings) == "");
+            warned += findings.empty() ? 0 : 1;
+        }
     }
+    CHECK(warned <= most_warned * 2 * count);
 }
 
 TEST_CASE("correct runs are accepted with slow motion or loads or resting joints or without gravity") {

@@ -3,12 +3,29 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace dfdyn::tools {
+
+/// Kind of a place with a number.
+enum class PlaceKind : std::uint8_t { joint, actuator, encoder, link, output };
+
+/// A place with a number: a part of the arm, or an output.
+struct Place {
+    PlaceKind kind = PlaceKind::joint;
+    std::size_t index = 0; ///< from 0
+};
+
+/// Returns the name of a place, with its number from 1: `joint1`.
+std::string place_text(PlaceKind kind, std::size_t index);
+
+/// Returns the place with this name. Empty for places without a number: `base`, `tool`, `ft_sensor`.
+std::optional<Place> numbered_place(const std::string& text);
 
 /// Change of the outputs per unit of a coefficient: one series for each output on which it acts.
 struct EffectColumn {
@@ -48,11 +65,13 @@ using NearestCoefficients =
 struct EffectShape {
     std::vector<std::size_t> columns; ///< of the candidate
     CoefficientRule allowed;
-    double value = 0;   ///< the shape's own parameter, if the effect has one
-    double bounded = 0; ///< number of coefficients that another coefficient bounds
+    double value = 0;         ///< the shape's own parameter, if the effect has one
+    double bounded_count = 0; ///< number of coefficients that another coefficient bounds
     /// Returns the admissible coefficients that explain most, from the normal equations, if the unconstrained
     /// ones are not admissible. Empty: the shape has no such search.
     NearestCoefficients nearest = {};
+    /// number of columns that the shape lacks because the motion does not determine them
+    std::size_t undetermined = 0;
 };
 
 /// A candidate cause at a place. It is either an effect of the catalogue, or an unnamed dependence of an
@@ -61,9 +80,9 @@ struct Candidate {
     std::string effect, where;
     std::vector<std::string> inputs; ///< inputs of an unnamed candidate
     std::string detail;              ///< distinguishes candidates of the same effect and place: axes, times
-    std::string span;   ///< candidates with the same span describe the same set of columns; empty: none
-    std::string family; ///< at most one candidate of a family is chosen; empty: no family
-    double tried = 1;   ///< number of alternatives from which it was selected beforehand
+    std::string span;        ///< candidates with the same span describe the same set of columns; empty: none
+    std::string family;      ///< at most one candidate of a family is chosen; empty: no family
+    double prior_trials = 1; ///< number of alternatives from which it was selected beforehand
     /// minimum log-evidence that it must exceed, from the other candidates of its kind
     double evidence_offset = 0;
     bool event = false; ///< occurs once: other times carry no information on it
@@ -75,7 +94,7 @@ struct Candidate {
     /// Returns the candidate relinearized about its estimate. Its first shape with the same number of columns
     /// is the current one: with nearer times, or with the exact effect of a large angle or a displaced mass.
     /// Empty: relinearization would change nothing.
-    std::function<Candidate(const EffectShape& shape, const Eigen::VectorXd& coefficients)> about;
+    std::function<Candidate(const EffectShape& shape, const Eigen::VectorXd& coefficients)> relinearized_at;
     /// Returns the catalogue's parameters, the main one first, from the coefficients of a shape.
     std::function<std::vector<EffectParameter>(const Eigen::VectorXd& coefficients, const EffectShape& shape)>
         parameters;

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/candidates/effect_regression.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <numeric>
 
 namespace dfdyn::tools {
+
+double held_out_reduction(const Eigen::MatrixXd& gram, const Eigen::VectorXd& moment,
+                          const WeightedSums& block) {
+    const Eigen::VectorXd fit = gram.ldlt().solve(moment);
+    return fit.dot(block.moment) - 0.5 * fit.dot(block.gram * fit);
+}
 
 SpectralColumn::SpectralColumn(const SpectralRows& rows, const EffectColumn& column) {
     for (const EffectColumn::Part& part : column.parts) {
@@ -47,7 +55,7 @@ Eigen::VectorXd EffectRegression::weighted(const Eigen::MatrixXd& rows, Eigen::I
     return result.reshaped();
 }
 
-void EffectRegression::add_sums(WeighedSums& sums, Eigen::Index output,
+void EffectRegression::add_sums(WeightedSums& sums, Eigen::Index output,
                                 const std::vector<Eigen::Index>& columns, Eigen::Index first,
                                 Eigen::Index count) const {
     std::vector<Eigen::Index> acting; // positions in `columns`
@@ -69,22 +77,21 @@ void EffectRegression::add_sums(WeighedSums& sums, Eigen::Index output,
     gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
     sums.gram(acting, acting) += gram;
     sums.moment(acting) += matrix.transpose() * wanted;
-    sums.energy += wanted.squaredNorm();
 }
 
-WeighedSums EffectRegression::weighted_sums(Eigen::Index first, Eigen::Index count) const {
+WeightedSums EffectRegression::weighted_sums(Eigen::Index first, Eigen::Index count) const {
     std::vector<Eigen::Index> all(columns_.size());
     std::iota(all.begin(), all.end(), 0);
-    WeighedSums sums = WeighedSums::zero(columns());
+    WeightedSums sums = WeightedSums::zero(columns());
     for (Eigen::Index output = 0; output < outputs(); ++output) {
         add_sums(sums, output, all, first, count);
     }
     return sums;
 }
 
-WeighedSums EffectRegression::sums_of_output(Eigen::Index output,
-                                             const std::vector<Eigen::Index>& columns) const {
-    WeighedSums sums = WeighedSums::zero(std::ssize(columns));
+WeightedSums EffectRegression::sums_of_output(Eigen::Index output,
+                                              const std::vector<Eigen::Index>& columns) const {
+    WeightedSums sums = WeightedSums::zero(std::ssize(columns));
     add_sums(sums, output, columns, 0, fitted_frames_);
     return sums;
 }

@@ -13,16 +13,20 @@
 namespace dfdyn::tools {
 
 /// Sums of squares and products of weighted rows. Column selection needs nothing else.
-struct WeighedSums {
+struct WeightedSums {
     Eigen::MatrixXd gram;   ///< p x p
     Eigen::VectorXd moment; ///< p
-    double energy = 0;      ///< of the target
 
     /// Returns the sums of `columns` columns over nothing.
-    static WeighedSums zero(Eigen::Index columns) {
-        return {Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns), 0};
+    static WeightedSums zero(Eigen::Index columns) {
+        return {Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns)};
     }
 };
+
+/// Leave-one-block-out cross-validation: returns half the reduction of a block's sum of squares by the fit to
+/// all other blocks. `gram` (p x p, positive definite) and `moment` (p): sums of the other blocks.
+double held_out_reduction(const Eigen::MatrixXd& gram, const Eigen::VectorXd& moment,
+                          const WeightedSums& block);
 
 /// A column as spectral rows, for each output on which it acts.
 struct SpectralColumn {
@@ -57,11 +61,11 @@ class EffectRegression {
     void set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& noise_scale);
     const Eigen::MatrixXd& noise() const noexcept { return noise_; }
 
-    WeighedSums weighted_sums() const { return weighted_sums(0, fitted_frames_); }
+    WeightedSums weighted_sums() const { return weighted_sums(0, fitted_frames_); }
     /// Returns the sums over `count` frames from `first` on.
-    WeighedSums weighted_sums(Eigen::Index first, Eigen::Index count) const;
+    WeightedSums weighted_sums(Eigen::Index first, Eigen::Index count) const;
     /// Returns the sums of `columns`, in their order, over one output and all fitted frames.
-    WeighedSums sums_of_output(Eigen::Index output, const std::vector<Eigen::Index>& columns) const;
+    WeightedSums sums_of_output(Eigen::Index output, const std::vector<Eigen::Index>& columns) const;
 
     /// Returns an output's weights of squares (bins x fitted frames).
     Eigen::MatrixXd weight(Eigen::Index output) const {
@@ -80,7 +84,7 @@ class EffectRegression {
 
   private:
     /// Adds the sums of `columns` over one output: `sums` has one row for each of them.
-    void add_sums(WeighedSums& sums, Eigen::Index output, const std::vector<Eigen::Index>& columns,
+    void add_sums(WeightedSums& sums, Eigen::Index output, const std::vector<Eigen::Index>& columns,
                   Eigen::Index first, Eigen::Index count) const;
     Eigen::VectorXd weighted(const Eigen::MatrixXd& rows, Eigen::Index output, Eigen::Index first,
                              Eigen::Index count) const;

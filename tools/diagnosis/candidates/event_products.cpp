@@ -20,8 +20,8 @@ const Eigen::VectorXd* series_on(const std::vector<EffectColumn>& of, Eigen::Ind
 
 std::optional<double> noise_event_threshold(const std::vector<EventWindow>& events) {
     // rank of the reference event, from 0; the threshold is three times its log-evidence
-    constexpr std::size_t usual = 3;
-    return events.size() > usual ? std::optional(1.5 * events[usual].score) : std::nullopt;
+    constexpr std::size_t reference_rank = 3;
+    return events.size() > reference_rank ? std::optional(1.5 * events[reference_rank].score) : std::nullopt;
 }
 
 Eigen::VectorXd weighted_share(const EffectRegression& regression, const Eigen::VectorXd& series) {
@@ -52,7 +52,7 @@ EventProducts::EventProducts(const std::vector<EffectColumn>& of, const Eigen::M
     }
 }
 
-double EventProducts::gain(const Eigen::VectorXd& moments, const Eigen::VectorXd& squares) const {
+double EventProducts::explained(const Eigen::VectorXd& moments, const Eigen::VectorXd& squares) const {
     Eigen::MatrixXd gram(columns, columns);
     Eigen::Index at = 0;
     for (Eigen::Index i = 0; i < columns; ++i) {

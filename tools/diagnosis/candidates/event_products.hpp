@@ -29,7 +29,7 @@ struct EventProducts {
                   const Eigen::VectorXd& share);
 
     /// Returns the sum of squares that the columns explain, from these sums of products.
-    double gain(const Eigen::VectorXd& moments, const Eigen::VectorXd& squares) const;
+    double explained(const Eigen::VectorXd& moments, const Eigen::VectorXd& squares) const;
 };
 
 } // namespace dfdyn::tools

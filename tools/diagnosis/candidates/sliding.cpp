@@ -7,7 +7,7 @@
 namespace dfdyn::tools {
 
 JointSignals::JointSignals(const DiagnosisSignals& signals, std::size_t joint)
-    : all(signals), where(numbered("joint", joint)), output(static_cast<Eigen::Index>(joint)),
+    : all(signals), where(place_text(PlaceKind::joint, joint)), output(static_cast<Eigen::Index>(joint)),
       position(signals.measured.motion.position.col(output)),
       velocity(signals.measured.motion.velocity.col(output)), direction(signals.direction(output)) {}
 

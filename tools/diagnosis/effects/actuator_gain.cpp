@@ -18,8 +18,8 @@ std::vector<Candidate> actuator_gain_candidates(const DiagnosisSignals& signals,
         return {};
     }
     const auto output = static_cast<Eigen::Index>(number);
-    Candidate result =
-        single_column(numbered("actuator", number), on_output(output, model.output.col(output)), up_to(0.8));
+    Candidate result = single_column(place_text(PlaceKind::actuator, number),
+                                     on_output(output, model.output.col(output)), up_to(0.8));
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
         return std::vector{true_over_assumed.at(1 / (1 + coefficients[0]))};
     };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
-#include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/candidates/effect_regression.hpp"
 #include "tools/diagnosis/candidates/true_position.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/effects/effect_internals.hpp"
 #include "tools/diagnosis/output/plot_abscissa.hpp"
 
 #include <algorithm>
@@ -54,7 +54,13 @@ Eigen::VectorXd sure_part(const DiagnosisSignals& signals, std::size_t joint, co
     return smooth_change(signals, joint, travel, std::min(1.0, sure_hz / smoothing_hz));
 }
 
-std::string family_of(std::size_t joint) { return "backlash at " + numbered("joint", joint); }
+/// Change of the outputs (T x m) that a backlash of `gap` at a joint causes, divided by the gap.
+Eigen::MatrixXd backlash_course(const DiagnosisSignals& signals, std::size_t joint, double gap) {
+    const Eigen::VectorXd travel = travel_in_gap(signals, static_cast<Eigen::Index>(joint), gap) / gap;
+    return signals.of_position(joint, sure_part(signals, joint, travel));
+}
+
+std::string family_of(std::size_t joint) { return "backlash at " + place_text(PlaceKind::joint, joint); }
 
 /// How a link changes flanks without an impact. Loads are relative to the rms of the rigid body's torque.
 struct Greased {
@@ -122,7 +128,7 @@ Candidate greased_candidate(const DiagnosisSignals& signals, std::size_t joint,
                             const std::vector<Greased>& gears) {
     constexpr double widest = 0.15; // rad
     Candidate result;
-    result.where = numbered("joint", joint);
+    result.where = place_text(PlaceKind::joint, joint);
     result.family = family_of(joint);
     result.detail = "without impacts";
     for (const Greased& gear : gears) {
@@ -132,7 +138,7 @@ Candidate greased_candidate(const DiagnosisSignals& signals, std::size_t joint,
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
         return std::vector{greased_gap.at(coefficients[0])};
     };
-    result.about = [&signals, joint, gears](const EffectShape& shape, const Eigen::VectorXd&) {
+    result.relinearized_at = [&signals, joint, gears](const EffectShape& shape, const Eigen::VectorXd&) {
         return greased_candidate(signals, joint, near(gears[shape.columns.front()]));
     };
     return result;
@@ -157,7 +163,7 @@ class BacklashScan : public EffectScan {
     };
     struct Best {
         const Course* course = nullptr; ///< null: none correlates
-        double gain = 0;                ///< twice the log-evidence of its column alone
+        double explained = 0;           ///< weighted sum of squares that its column alone explains
     };
     struct Joint {
         std::vector<Course> impacts, greased;
@@ -179,7 +185,7 @@ BacklashScan::BacklashScan(const DiagnosisSignals& signals, const SpectralRows& 
     };
     for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
         for (double gap = narrowest_gap; gap < widest_gap; gap *= gap_ratio) {
-            joints_[joint].impacts.push_back(with_power({gap, {}, play_course(signals, joint, gap)}));
+            joints_[joint].impacts.push_back(with_power({gap, {}, backlash_course(signals, joint, gap)}));
         }
         for (const Greased& gear : all_greased()) {
             joints_[joint].greased.push_back(with_power({0, gear, greased_course(signals, joint, gear)}));
@@ -192,9 +198,9 @@ BacklashScan::Best BacklashScan::best(const FittedResidual& residual, const std:
     for (const Course& course : courses) {
         const double product = residual.weighted.cwiseProduct(course.series).sum();
         const double energy = course.power.cwiseQuotient(residual.regression.noise()).sum();
-        const double gain = product > 0 && energy > 0 ? product * product / energy : 0;
-        if (gain > best.gain) {
-            best = {&course, gain};
+        const double explained = product > 0 && energy > 0 ? product * product / energy : 0;
+        if (explained > best.explained) {
+            best = {&course, explained};
         }
     }
     return best;
@@ -202,12 +208,12 @@ BacklashScan::Best BacklashScan::best(const FittedResidual& residual, const std:
 
 /// A greased gear fits many courses. It is preferred only where it is clearly better than an impact.
 std::vector<Candidate> BacklashScan::candidates(const FittedResidual& residual) const {
-    constexpr double clearly = 20; // of gain
+    constexpr double clearly = 20; // of the explained sum of squares
     std::vector<Candidate> result;
     for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
         const Best impact = best(residual, joints_[joint].impacts);
         const Best greased = best(residual, joints_[joint].greased);
-        if (greased.gain > impact.gain + clearly) {
+        if (greased.explained > impact.explained + clearly) {
             result.push_back(greased_candidate(residual.signals, joint, near(greased.course->gear)));
         } else if (impact.course != nullptr) {
             const double found = impact.course->gap;
@@ -216,22 +222,17 @@ std::vector<Candidate> BacklashScan::candidates(const FittedResidual& residual) 
         } else {
             continue;
         }
-        result.back().tried = static_cast<double>(joints_[joint].impacts.size()) / 3;
+        result.back().prior_trials = static_cast<double>(joints_[joint].impacts.size()) / 3;
     }
     return result;
 }
 
 } // namespace
 
-Eigen::MatrixXd play_course(const DiagnosisSignals& signals, std::size_t joint, double gap) {
-    const Eigen::VectorXd travel = travel_in_gap(signals, static_cast<Eigen::Index>(joint), gap) / gap;
-    return signals.of_position(joint, sure_part(signals, joint, travel));
-}
-
 Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
                              const std::vector<double>& gaps) {
     Candidate result;
-    result.where = numbered("joint", joint);
+    result.where = place_text(PlaceKind::joint, joint);
     result.family = family_of(joint);
     for (const double gap : gaps) {
         const auto allowed = [gap](const Eigen::VectorXd& coefficients) {
@@ -240,7 +241,7 @@ Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
             return coefficients[0] > least * gap && coefficients[0] < most * gap;
         };
         result.shapes.push_back({{result.columns.size()}, allowed, gap});
-        result.columns.push_back(on_outputs(play_course(signals, joint, gap)));
+        result.columns.push_back(on_outputs(backlash_course(signals, joint, gap)));
     }
     // The gap follows from the course, that is, from the duration of the fall. The coefficient only describes
     // how hard the link is caught. Without an impact, as in grease, it would be the gap.
@@ -250,7 +251,7 @@ Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
         gap.systematic_relative_std = std::hypot(gap.systematic_relative_std, softer / 2);
         return std::vector{gap};
     };
-    result.about = [&signals, joint](const EffectShape& shape, const Eigen::VectorXd&) {
+    result.relinearized_at = [&signals, joint](const EffectShape& shape, const Eigen::VectorXd&) {
         const double found = shape.value;
         return backlash_candidate(signals, joint,
                                   {found, found / 1.12, found / 1.04, found * 1.04, found * 1.12});

@@ -21,7 +21,7 @@ std::vector<Candidate> delay_candidates(const DiagnosisSignals& signals, const F
     }
     const auto output = static_cast<Eigen::Index>(number);
     return {
-        single_column(numbered("actuator", number),
+        single_column(place_text(PlaceKind::actuator, number),
                       on_output(output, signals.per_delay(model.output.col(output), model.delay_s[output])),
                       positive_up_to(longest_delay_s), output_delay)};
 }

@@ -71,8 +71,8 @@ class EffectScan {
     /// Returns the candidates that explain most of the residual. The scan must outlive them.
     virtual std::vector<Candidate> candidates(const FittedResidual& residual) const = 0;
     /// Sets the evidence offset (`evidence_offset`) of all candidates of this effect, found now or earlier.
-    virtual void set_prices(const std::vector<Candidate*>& /*own*/,
-                            const FittedResidual& /*residual*/) const {}
+    virtual void set_evidence_offsets(const std::vector<Candidate*>& /*own*/,
+                                      const FittedResidual& /*residual*/) const {}
 };
 
 /// An effect of the catalogue. The diagnosis defines it here and nowhere else.

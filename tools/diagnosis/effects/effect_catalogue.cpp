@@ -2,15 +2,11 @@
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 namespace dfdyn::tools {
 
 namespace {
-
-constexpr std::array places{Each::sensor, Each::axis_pair, Each::reading, Each::torque_joint,
-                            Each::arm,    Each::body,      Each::joint};
 
 std::size_t count_of(Each each, const DiagnosisSignals& signals) {
     switch (each) {
@@ -38,7 +34,12 @@ template <class Make>
 std::vector<Candidate> candidates_by(const DiagnosisSignals& signals, std::span<const Effect> effects,
                                      const Make& make) {
     std::vector<Candidate> result;
-    for (const Each each : places) {
+    if (effects.empty()) {
+        return result;
+    }
+    const Each last = std::ranges::max_element(effects, {}, &Effect::each)->each;
+    for (int kind = 0; kind <= static_cast<int>(last); ++kind) {
+        const auto each = static_cast<Each>(kind);
         for (std::size_t number = 0; number < count_of(each, signals); ++number) {
             for (const Effect& effect : effects) {
                 if (effect.each != each) {
@@ -109,7 +110,7 @@ bool has_trait(const std::string& effect, bool Effect::*trait) {
     return found != nullptr && found->*trait;
 }
 
-std::vector<Candidate> lasting_candidates(const DiagnosisSignals& signals, std::span<const Effect> effects) {
+std::vector<Candidate> static_candidates(const DiagnosisSignals& signals, std::span<const Effect> effects) {
     return candidates_by(signals, effects, [&](const Effect& effect, std::size_t number) {
         return effect.candidates == nullptr ? std::vector<Candidate>() : effect.candidates(signals, number);
     });

@@ -55,8 +55,8 @@ const Effect& effect_named(const std::string& name);
 bool has_trait(const std::string& effect, bool Effect::*trait);
 
 /// Returns the candidates of `effects` that do not depend on a fitted model.
-std::vector<Candidate> lasting_candidates(const DiagnosisSignals& signals,
-                                          std::span<const Effect> effects = effect_catalogue());
+std::vector<Candidate> static_candidates(const DiagnosisSignals& signals,
+                                         std::span<const Effect> effects = effect_catalogue());
 
 /// Returns the candidates of `effects` that depend on a fitted model: gains, delays, drifts, crosstalk.
 std::vector<Candidate> fitted_candidates(const DiagnosisSignals& signals, const FittedModel& model,

@@ -29,11 +29,11 @@ Candidate eccentric_candidate(const DiagnosisSignals& signals, std::size_t joint
         outputs_with_position(signals, joint, -along_sine * position.sin().matrix());
     const Eigen::MatrixXd both = outputs_with_position(signals, joint, (position - measured).matrix());
     Candidate result;
-    result.where = numbered("encoder", joint);
+    result.where = place_text(PlaceKind::encoder, joint);
     result.columns = {on_outputs((first - signals.nominal) / along_sine),
                       on_outputs((both - first) / along_cosine)};
     result.shapes = {whole_shape(result, up_to(0.3))};
-    result.about = [&signals, joint](const EffectShape&, const Eigen::VectorXd& coefficients) {
+    result.relinearized_at = [&signals, joint](const EffectShape&, const Eigen::VectorXd& coefficients) {
         return eccentric_candidate(signals, joint, coefficients[0], coefficients[1]);
     };
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {

@@ -17,10 +17,10 @@ Candidate offset_candidate(const DiagnosisSignals& signals, std::size_t joint, d
     const double reference = at_least_small(angle);
     const Eigen::VectorXd everywhere = Eigen::VectorXd::Constant(signals.rows(), reference);
     Candidate result = single_column(
-        numbered("encoder", joint),
+        place_text(PlaceKind::encoder, joint),
         on_outputs((outputs_with_position(signals, joint, -everywhere) - signals.nominal) / reference),
         up_to(0.6), offset_angle);
-    result.about = [&signals, joint](const EffectShape&, const Eigen::VectorXd& coefficients) {
+    result.relinearized_at = [&signals, joint](const EffectShape&, const Eigen::VectorXd& coefficients) {
         return offset_candidate(signals, joint, coefficients[0]);
     };
     return result;

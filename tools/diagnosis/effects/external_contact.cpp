@@ -1,27 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/base/text/number.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
-#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/candidates/contact_pulse.hpp"
 #include "tools/diagnosis/candidates/event_products.hpp"
-#include "tools/diagnosis/candidates/scans.hpp"
+#include "tools/diagnosis/candidates/weighted_residual.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/effects/effect_internals.hpp"
 #include "tools/diagnosis/output/plot_abscissa.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
 
 namespace dfdyn::tools {
 
 namespace {
-
-constexpr ParameterKind contact_start{"start", "s", std::nullopt};
-constexpr ParameterKind contact_end{"end", "s", std::nullopt};
-constexpr ParameterKind contact_peak{"peak", "N·m, N"}; // at a joint, at the tip
-constexpr std::array contact_direction{ParameterKind{"base_x", "1"}, ParameterKind{"base_y", "1"},
-                                       ParameterKind{"base_z", "1"}};
 
 /// Outputs (T x m) for a force of 1 N along `axis` at the tip: those of an arm at rest that consists of 1 kg
 /// at its tip only, with gravity of 1 m/s² along `axis`.
@@ -73,8 +64,8 @@ Candidate contact_with_shapes(const DiagnosisSignals& signals, const ContactSite
                                                    const EffectShape& shape) {
         return contact_parameters(pulses[static_cast<std::size_t>(shape.value)], unit, coefficients);
     };
-    result.about = [&signals, &site, pulses, reach, detail = result.detail](const EffectShape& shape,
-                                                                            const Eigen::VectorXd&) {
+    result.relinearized_at = [&signals, &site, pulses, reach,
+                              detail = result.detail](const EffectShape& shape, const Eigen::VectorXd&) {
         const double nearer = std::max(0.02, reach / 2);
         return contact_with_shapes(signals, site, detail, nearer,
                                    pulses_about(pulses[static_cast<std::size_t>(shape.value)], nearer));
@@ -99,10 +90,10 @@ void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regre
     const Eigen::VectorXd shape_square = shape.cwiseAbs2();
     for (Eigen::Index first = 0; first + length < time.size();
          first += std::max<Eigen::Index>(1, length / 8)) {
-        const double gain =
-            products.gain(products.moment.middleRows(first, length).transpose() * shape,
-                          products.square.middleRows(first, length).transpose() * shape_square);
-        found.push_back({gain, time[first], time[first + length]});
+        const double explained =
+            products.explained(products.moment.middleRows(first, length).transpose() * shape,
+                               products.square.middleRows(first, length).transpose() * shape_square);
+        found.push_back({explained, time[first], time[first + length]});
     }
 }
 
@@ -118,7 +109,8 @@ class ContactScan : public EffectScan {
     }
     /// Gives all contacts at a site the same evidence offset. After the largest ones are chosen, the
     /// remaining ones differ less from each other.
-    void set_prices(const std::vector<Candidate*>& own, const FittedResidual& /*residual*/) const override {
+    void set_evidence_offsets(const std::vector<Candidate*>& own,
+                              const FittedResidual& /*residual*/) const override {
         for (const Candidate* const one : own) {
             for (Candidate* const other : own) {
                 if (one->where == other->where) {
@@ -148,29 +140,6 @@ PlotAbscissa around_contact(const PlottedFinding& at) {
 
 } // namespace
 
-std::vector<EffectParameter> contact_parameters(const ContactPulse& pulse, const std::string& unit,
-                                                const Eigen::VectorXd& components) {
-    std::vector values{contact_start.at(pulse.start_s), contact_end.at(pulse.end_s),
-                       contact_peak.at(components.size() == 1 ? components[0] : components.norm())};
-    values.back().unit = unit;
-    for (std::size_t axis = 0; components.size() > 1 && axis < contact_direction.size(); ++axis) {
-        values.push_back(
-            contact_direction[axis].at(components[static_cast<Eigen::Index>(axis)] / components.norm()));
-    }
-    return values;
-}
-
-std::string start_words(const ContactPulse& pulse) { return formatted("%.2f s", pulse.start_s); }
-
-double pulse_at(const ContactPulse& pulse, double time_s) {
-    const double inside = std::min(time_s - pulse.start_s, pulse.end_s - time_s);
-    return (1 - std::cos(std::numbers::pi * std::clamp(inside / pulse.rise_s, 0.0, 1.0))) / 2;
-}
-
-Eigen::VectorXd pulse_series(const DiagnosisSignals& signals, const ContactPulse& pulse) {
-    return signals.measured.time_s.unaryExpr([&](double time_s) { return pulse_at(pulse, time_s); });
-}
-
 std::vector<ContactPulse> pulses_about(const ContactPulse& pulse, double reach) {
     const double length = pulse.end_s - pulse.start_s;
     std::vector<ContactPulse> pulses;
@@ -198,7 +167,7 @@ std::vector<ContactSite> contact_sites(const DiagnosisSignals& signals) {
     }
     for (Eigen::Index joint = 0; joint < signals.outputs(); ++joint) {
         // negative: a torque that the environment exerts reduces the actuator's torque
-        sites.push_back({numbered("joint", static_cast<std::size_t>(joint)),
+        sites.push_back({place_text(PlaceKind::joint, static_cast<std::size_t>(joint)),
                          "N·m",
                          {on_output(joint, -Eigen::VectorXd::Ones(signals.rows()))}});
     }
@@ -224,7 +193,7 @@ std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const Effe
             const EventWindow& best = events.front();
             const ContactPulse pulse{best.start_s, best.end_s, push_flanks * (best.end_s - best.start_s)};
             result.push_back(contact_candidate(signals, site, pulse, pulses_about(pulse, 0.15)));
-            result.back().tried = static_cast<double>(windows.size());
+            result.back().prior_trials = static_cast<double>(windows.size());
             result.back().evidence_offset = *demanded;
         }
     }

@@ -17,7 +17,7 @@ std::vector<Candidate> drift_candidates(const DiagnosisSignals& signals, const F
         return {};
     }
     const Eigen::VectorXd elapsed = signals.measured.time_s.array() - signals.measured.time_s[0];
-    return {single_column(numbered("joint", number),
+    return {single_column(place_text(PlaceKind::joint, number),
                           on_output(joint, model.friction.col(joint).cwiseProduct(elapsed)), is_anything,
                           friction_rate)};
 }

@@ -34,7 +34,7 @@ Candidate tilt_candidate(const DiagnosisSignals& signals, double x, double y) {
     result.columns = {on_outputs((tilted_outputs(signals, along_x, along_y) - first) / along_x),
                       on_outputs((first - signals.nominal) / along_y)};
     result.shapes = {whole_shape(result, up_to(0.6))};
-    result.about = [&signals](const EffectShape&, const Eigen::VectorXd& coefficients) {
+    result.relinearized_at = [&signals](const EffectShape&, const Eigen::VectorXd& coefficients) {
         return tilt_candidate(signals, coefficients[0], coefficients[1]);
     };
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {

@@ -14,7 +14,7 @@ constexpr ParameterKind joint_stiffness{"stiffness", "N·m/rad"};
 std::vector<Candidate> flexibility_candidates(const DiagnosisSignals& signals, std::size_t number) {
     const auto joint = static_cast<Eigen::Index>(number);
     Candidate result =
-        single_column(numbered("joint", number),
+        single_column(place_text(PlaceKind::joint, number),
                       on_outputs(signals.of_position(
                           number, -smooth_change(signals, number, signals.joint_torque.col(joint), 0.5))),
                       is_positive);

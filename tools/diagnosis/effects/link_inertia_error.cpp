@@ -15,7 +15,25 @@ constexpr ParameterKind link_delta_mass{"delta_mass", "kg"};
 constexpr std::array link_delta_centre{ParameterKind{"delta_com_x", "m"}, ParameterKind{"delta_com_y", "m"},
                                        ParameterKind{"delta_com_z", "m"}};
 
-/// Error of the mass at the link's centre of mass, of the centre of mass, or of both.
+constexpr double most_shapes = 3;
+
+/// Returns the shapes that the motion determines, for a link with this mass: an error of the mass at the
+/// link's centre of mass, of the centre of mass, or of both.
+std::vector<EffectShape> link_shapes(const std::vector<EffectColumn>& columns, double mass) {
+    std::vector<EffectShape> shapes = determined_shapes(columns, {{0}, {1, 2, 3}, {0, 1, 2, 3}});
+    for (EffectShape& shape : shapes) {
+        shape.bounded_count = shape.columns.front() == 0 ? static_cast<double>(shape.columns.size() - 1) : 0;
+        shape.allowed = [mass, own = shape](const Eigen::VectorXd& coefficients) {
+            constexpr double farthest = 0.3; // m: largest error of a centre of mass
+            constexpr double heaviest = 5;   // multiple of the mass in the robot's file
+            const MassChange change = mass_change(coefficients, own);
+            const double found = mass + change.mass;
+            return found > 0 && found <= heaviest * mass && change.moments.norm() <= farthest * found;
+        };
+    }
+    return shapes;
+}
+
 std::vector<Candidate> link_candidates(const DiagnosisSignals& signals, std::size_t number) {
     const auto index = static_cast<Eigen::Index>(number);
     const Eigen::VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
@@ -24,26 +42,20 @@ std::vector<Candidate> link_candidates(const DiagnosisSignals& signals, std::siz
     const Eigen::Vector3d centre =
         mass > 0 ? Eigen::Vector3d(nominal.segment<3>(10 * index + 1) / mass) : Eigen::Vector3d::Zero();
     Candidate result;
-    result.where = numbered("link", signals.link_of(index));
+    result.where = place_text(PlaceKind::link, signals.link_of(index));
     result.span = index + 1 == bodies ? last_body : "";
     result.columns = mass_columns(signals, index, centre, Eigen::Isometry3d::Identity());
-    const auto body = [mass](double delta_mass, const Eigen::VectorXd& moments) {
-        constexpr double farthest = 0.3; // m: largest error of a centre of mass
-        constexpr double heaviest = 5;   // multiple of the mass in the robot's file
-        return mass + delta_mass > 0 && mass + delta_mass <= heaviest * mass &&
-               moments.norm() <= farthest * (mass + delta_mass);
-    };
-    result.shapes = {
-        {{0}, [body](const Eigen::VectorXd& c) { return body(c[0], Eigen::VectorXd::Zero(3)); }, 0},
-        {{1, 2, 3}, [body](const Eigen::VectorXd& c) { return body(0, c); }, 0},
-        {{0, 1, 2, 3}, [body](const Eigen::VectorXd& c) { return body(c[0], c.tail(3)); }, 0, 3}};
+    result.shapes = link_shapes(result.columns, mass);
+    // shapes that the motion does not determine do not change the prior of the others
+    result.prior_trials = most_shapes / static_cast<double>(result.shapes.size());
     result.parameters = [mass](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
-        const bool with_mass = shape.columns.front() == 0;
-        const double delta_mass = with_mass ? coefficients[0] : 0;
-        std::vector values{link_delta_mass.at(delta_mass)};
-        for (Eigen::Index axis = 0; axis < 3 && shape.columns.size() > 1; ++axis) {
-            values.push_back(link_delta_centre[static_cast<std::size_t>(axis)].at(
-                coefficients[axis + (with_mass ? 1 : 0)] / (mass + delta_mass)));
+        const MassChange change = mass_change(coefficients, shape);
+        std::vector values{link_delta_mass.at(change.mass)};
+        for (std::size_t axis = 0; axis < link_delta_centre.size(); ++axis) {
+            if (has_moment(shape, axis)) {
+                values.push_back(link_delta_centre[axis].at(change.moments[static_cast<Eigen::Index>(axis)] /
+                                                            (mass + change.mass)));
+            }
         }
         return values;
     };
@@ -53,18 +65,15 @@ std::vector<Candidate> link_candidates(const DiagnosisSignals& signals, std::siz
 /// Changes the mass and the position of the link's centre of mass in the model.
 EffectDisposition extend_by_link(ModelExtension& extension, const ChosenEffect& chosen) {
     auto parameters = extension.body(chosen.number());
-    const bool with_mass = chosen.shape.columns.front() == 0;
+    const MassChange change = mass_change(chosen.coefficients, chosen.shape);
     const double mass = parameters[0];
-    const double found_mass = mass + (with_mass ? chosen.coefficients[0] : 0);
+    const double found_mass = mass + change.mass;
     const Eigen::Vector3d centre =
         mass > 0 ? Eigen::Vector3d(parameters.segment<3>(1) / mass) : Eigen::Vector3d::Zero();
-    const Eigen::Vector3d moment = chosen.coefficients.size() > 1
-                                       ? Eigen::Vector3d(chosen.coefficients.tail<3>())
-                                       : Eigen::Vector3d::Zero();
     if (!(found_mass > 0)) {
         return EffectDisposition::left_out;
     }
-    parameters += point_mass(found_mass, centre + moment / found_mass) - point_mass(mass, centre);
+    parameters += point_mass(found_mass, centre + change.moments / found_mass) - point_mass(mass, centre);
     return EffectDisposition::adapting;
 }
 

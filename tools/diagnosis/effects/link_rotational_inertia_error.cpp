@@ -94,7 +94,7 @@ std::vector<Candidate> inertia_candidates(const DiagnosisSignals& signals, std::
     const std::size_t link = signals.link_of(index);
     const double reach = reach_of_link(signals.robot, link, body);
     Candidate result;
-    result.where = numbered("link", link);
+    result.where = place_text(PlaceKind::link, link);
     result.columns.push_back(on_outputs(signals.of_body(index, as_parameters(nominal))));
     for (Eigen::Index kind = 0; kind < CentralInertia::SizeAtCompileTime; ++kind) {
         result.columns.push_back(

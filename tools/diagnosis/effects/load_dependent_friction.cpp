@@ -16,9 +16,9 @@ constexpr ParameterKind friction_per_load{"mu", "1"};
 std::vector<Candidate> load_friction_candidates(const DiagnosisSignals& signals, std::size_t number) {
     const JointSignals joint(signals, number);
     const Eigen::VectorXd load = joint.all.joint_torque.col(joint.output).cwiseAbs();
-    const double usual = std::max(root_mean_square(load), 1e-9);
-    const auto column = [load, usual, joint](double distance) {
-        return joint.column(usual * dahl(joint, distance, load / usual));
+    const double rms_load = std::max(root_mean_square(load), 1e-9);
+    const auto column = [load, rms_load, joint](double distance) {
+        return joint.column(rms_load * dahl(joint, distance, load / rms_load));
     };
     Candidate result = joint.candidate();
     for (const double distance : {1.0 / 8, 1.0 / 3, 1.0, 3.0, 9.0}) {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
-#include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/candidates/event_products.hpp"
 #include "tools/diagnosis/candidates/point_mass.hpp"
-#include "tools/diagnosis/candidates/scans.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/effects/effect_internals.hpp"
 #include "tools/diagnosis/extension/extension_parts.hpp"
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -27,13 +28,14 @@ Eigen::VectorXd at_farthest(const Eigen::MatrixXd& squares, const Eigen::VectorX
     constexpr double margin = 0.999;
     const double bound = margin * farthest_payload;
     // the quadratic form of the coefficients that is 0 at the bound
-    const Eigen::Vector4d cone(-bound * bound, 1, 1, 1);
+    Eigen::VectorXd cone = Eigen::VectorXd::Ones(moments.size());
+    cone[0] = -bound * bound;
     const auto at = [&](double multiplier) {
         Eigen::MatrixXd system = squares;
         system.diagonal() += multiplier * cone;
         const Eigen::LLT<Eigen::MatrixXd> factor(system);
         return factor.info() == Eigen::Success ? Eigen::VectorXd(factor.solve(moments))
-                                               : Eigen::VectorXd::Zero(4).eval();
+                                               : Eigen::VectorXd::Zero(moments.size()).eval();
     };
     double low = 0;
     double high = 1e-9 * squares.trace();
@@ -55,19 +57,41 @@ bool within_reach(const Eigen::VectorXd& coefficients) {
 }
 
 /// Returns the position of the centre of mass (m, in the tip's frame): the tip if it was not fitted.
-Eigen::Vector3d centre_of(const Eigen::VectorXd& coefficients) {
-    return coefficients.size() == 4 ? Eigen::Vector3d(coefficients.tail<3>() / coefficients[0])
-                                    : Eigen::Vector3d::Zero();
+Eigen::Vector3d centre_of(const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+    return coefficients.size() > 1
+               ? Eigen::Vector3d(mass_change(coefficients, shape).moments / coefficients[0])
+               : Eigen::Vector3d::Zero();
 }
 
-std::vector<EffectParameter> payload_parameters(const Eigen::VectorXd& coefficients, const EffectShape&) {
+std::vector<EffectParameter> payload_parameters(const Eigen::VectorXd& coefficients,
+                                                const EffectShape& shape) {
     std::vector values{payload_mass.at(coefficients[0])};
-    const Eigen::Vector3d centre = centre_of(coefficients);
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        values.push_back(payload_centre[static_cast<std::size_t>(axis)].at(centre[axis]));
+    const Eigen::Vector3d centre = centre_of(coefficients, shape);
+    for (std::size_t axis = 0; axis < payload_centre.size(); ++axis) {
+        if (shape.columns.size() == 1 || has_moment(shape, axis)) {
+            values.push_back(payload_centre[axis].at(centre[static_cast<Eigen::Index>(axis)]));
+        }
     }
     return values;
 }
+
+/// Returns the shapes of a payload that the motion determines, first the one at the tip. `permanent`: columns
+/// of a payload in the whole recording.
+std::vector<EffectShape> payload_shapes(const std::vector<EffectColumn>& permanent) {
+    std::vector<EffectShape> shapes = determined_shapes(permanent, {{0}, {0, 1, 2, 3}});
+    std::erase_if(shapes, [](const EffectShape& shape) { return shape.columns.front() != 0; });
+    for (EffectShape& shape : shapes) {
+        shape.allowed = within_reach;
+        shape.bounded_count = static_cast<double>(shape.columns.size() - 1);
+        if (shape.columns.size() > 1) {
+            shape.nearest = at_farthest;
+        }
+    }
+    return shapes;
+}
+
+/// Returns the factor of the prior that keeps the one of payloads whose centre the motion determines.
+double trials_of(const std::vector<EffectShape>& shapes) { return 2.0 / static_cast<double>(shapes.size()); }
 
 /// A payload for the whole recording: at the tip, or with its centre of mass anywhere. Its moment of inertia
 /// is exact at the tip and at `centre`.
@@ -77,9 +101,10 @@ Candidate payload_about(const DiagnosisSignals& signals, const Eigen::Vector3d& 
     result.span = last_body;
     result.family = one_payload;
     result.columns = payload_columns(signals, centre);
-    result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0, 3, at_farthest}};
-    result.about = [&signals](const EffectShape&, const Eigen::VectorXd& coefficients) {
-        return payload_about(signals, centre_of(coefficients));
+    result.shapes = payload_shapes(result.columns);
+    result.prior_trials = trials_of(result.shapes);
+    result.relinearized_at = [&signals](const EffectShape& shape, const Eigen::VectorXd& coefficients) {
+        return payload_about(signals, centre_of(coefficients, shape));
     };
     result.always_relinearized = true;
     result.parameters = payload_parameters;
@@ -111,74 +136,7 @@ Eigen::Index fitted_rows(const Eigen::MatrixXd& weighted) {
     return rows;
 }
 
-/// Searches for a payload that is picked up during the recording.
-class PayloadScan : public EffectScan {
-  public:
-    explicit PayloadScan(const DiagnosisSignals& signals) : payload_(payload_columns(signals)) {}
-
-    std::vector<Candidate> candidates(const FittedResidual& residual) const override {
-        return scan_taken_payload(residual.signals, residual.regression, residual.weighted, payload_);
-    }
-    /// Every payload that is picked up, chosen or not, must exceed the other windows in the current residual.
-    void set_prices(const std::vector<Candidate*>& own, const FittedResidual& residual) const override {
-        for (Candidate* const candidate : own) {
-            if (candidate->event) {
-                candidate->evidence_offset =
-                    payload_evidence_threshold(residual.signals, residual.regression, residual.weighted,
-                                               payload_, candidate->shapes.front().value);
-            }
-        }
-    }
-
-  private:
-    std::vector<EffectColumn> payload_;
-};
-
-EffectDisposition extend_by_payload(ModelExtension& extension, const ChosenEffect& chosen) {
-    const InertialParameters payload = point_mass(chosen.coefficients[0], centre_of(chosen.coefficients));
-    extension.bodies.tail<10>() += moved(payload, extension.robot.tip_placement);
-    return EffectDisposition::adapting;
-}
-
-} // namespace
-
-std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals, const Eigen::Vector3d& centre) {
-    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
-    return mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement, centre);
-}
-
-Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<EffectColumn>& lasting,
-                        const std::vector<double>& times_s) {
-    Candidate result;
-    result.where = "tool";
-    result.detail = "taken";
-    result.family = one_payload;
-    result.event = true;
-    for (const double time_s : times_s) {
-        const std::size_t first = result.columns.size();
-        const Eigen::VectorXd there = (signals.measured.time_s.array() >= time_s).cast<double>();
-        for (EffectColumn column : lasting) {
-            for (EffectColumn::Part& part : column.parts) {
-                part.series = part.series.cwiseProduct(there);
-            }
-            result.columns.push_back(std::move(column));
-        }
-        result.shapes.push_back({{first}, within_reach, time_s});
-        result.shapes.push_back({{first, first + 1, first + 2, first + 3}, within_reach, time_s, 3});
-    }
-    result.about = [&signals, &lasting](const EffectShape& shape, const Eigen::VectorXd&) {
-        const double time_s = shape.value;
-        return taken_payload(signals, lasting,
-                             {time_s, time_s - 0.12, time_s - 0.04, time_s + 0.04, time_s + 0.12});
-    };
-    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
-        std::vector<EffectParameter> values = payload_parameters(coefficients, shape);
-        values.push_back(payload_attached.at(shape.value));
-        return values;
-    };
-    return result;
-}
-
+/// Returns a payload (`payload`: its columns) that is picked up at the time that explains most.
 std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
                                           const Eigen::MatrixXd& weighted,
                                           const std::vector<EffectColumn>& payload) {
@@ -194,9 +152,9 @@ std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const
     for (Eigen::Index row = rows - 1; row >= margin; --row) {
         moments += products.moment.row(row).transpose();
         squares += products.square.row(row).transpose();
-        const double gain = row + margin < rows ? products.gain(moments, squares) : 0;
-        if (gain > best) {
-            best = gain;
+        const double explained = row + margin < rows ? products.explained(moments, squares) : 0;
+        if (explained > best) {
+            best = explained;
             taken = row;
         }
     }
@@ -206,8 +164,86 @@ std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const
     const double time_s = signals.measured.time_s[taken];
     Candidate candidate =
         taken_payload(signals, payload, {time_s, time_s - 0.3, time_s - 0.1, time_s + 0.1, time_s + 0.3});
-    candidate.tried = signals.measured.time_s[signals.rows() - 1] - signals.measured.time_s[0];
+    candidate.prior_trials *= signals.measured.time_s[signals.rows() - 1] - signals.measured.time_s[0];
     return {std::move(candidate)};
+}
+
+/// Searches for a payload that is picked up during the recording.
+class PayloadScan : public EffectScan {
+  public:
+    explicit PayloadScan(const DiagnosisSignals& signals) : payload_(payload_columns(signals)) {}
+
+    std::vector<Candidate> candidates(const FittedResidual& residual) const override {
+        return scan_taken_payload(residual.signals, residual.regression, residual.weighted, payload_);
+    }
+    /// Every payload that is picked up, chosen or not, must exceed the other windows in the current residual.
+    void set_evidence_offsets(const std::vector<Candidate*>& own,
+                              const FittedResidual& residual) const override {
+        for (Candidate* const candidate : own) {
+            if (candidate->event) {
+                candidate->evidence_offset =
+                    payload_evidence_threshold(residual.signals, residual.regression, residual.weighted,
+                                               payload_, candidate->shapes.front().value);
+            }
+        }
+    }
+
+  private:
+    std::vector<EffectColumn> payload_;
+};
+
+EffectDisposition extend_by_payload(ModelExtension& extension, const ChosenEffect& chosen) {
+    const InertialParameters payload =
+        point_mass(chosen.coefficients[0], centre_of(chosen.coefficients, chosen.shape));
+    extension.bodies.tail<10>() += moved(payload, extension.robot.tip_placement);
+    return EffectDisposition::adapting;
+}
+
+} // namespace
+
+std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals, const Eigen::Vector3d& centre) {
+    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
+    return mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement, centre);
+}
+
+Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<EffectColumn>& permanent,
+                        const std::vector<double>& times_s) {
+    Candidate result;
+    result.where = "tool";
+    result.detail = "taken";
+    result.family = one_payload;
+    result.event = true;
+    std::vector<EffectShape> shapes = payload_shapes(permanent);
+    result.prior_trials = trials_of(shapes);
+    for (EffectShape& shape : shapes) {
+        shape.nearest = {}; // the time that explains most must have an admissible centre
+    }
+    for (const double time_s : times_s) {
+        const std::size_t first = result.columns.size();
+        const Eigen::VectorXd there = (signals.measured.time_s.array() >= time_s).cast<double>();
+        for (EffectColumn column : permanent) {
+            for (EffectColumn::Part& part : column.parts) {
+                part.series = part.series.cwiseProduct(there);
+            }
+            result.columns.push_back(std::move(column));
+        }
+        for (EffectShape shape : shapes) {
+            std::ranges::for_each(shape.columns, [first](std::size_t& column) { column += first; });
+            shape.value = time_s;
+            result.shapes.push_back(std::move(shape));
+        }
+    }
+    result.relinearized_at = [&signals, &permanent](const EffectShape& shape, const Eigen::VectorXd&) {
+        const double time_s = shape.value;
+        return taken_payload(signals, permanent,
+                             {time_s, time_s - 0.12, time_s - 0.04, time_s + 0.04, time_s + 0.12});
+    };
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        std::vector<EffectParameter> values = payload_parameters(coefficients, shape);
+        values.push_back(payload_attached.at(shape.value));
+        return values;
+    };
+    return result;
 }
 
 double payload_evidence_threshold(const DiagnosisSignals& signals, const EffectRegression& regression,
@@ -223,9 +259,10 @@ double payload_evidence_threshold(const DiagnosisSignals& signals, const EffectR
     std::vector<EventWindow> windows;
     for (Eigen::Index first = 0; length > 0 && first + length <= rows;
          first += std::max<Eigen::Index>(1, length / 8)) {
-        const double gain = products.gain(products.moment.middleRows(first, length).colwise().sum(),
-                                          products.square.middleRows(first, length).colwise().sum());
-        windows.push_back({gain, time[first], time[first + length - 1]});
+        const double explained =
+            products.explained(products.moment.middleRows(first, length).colwise().sum(),
+                               products.square.middleRows(first, length).colwise().sum());
+        windows.push_back({explained, time[first], time[first + length - 1]});
     }
     return noise_event_threshold(events_of(std::move(windows), events_apart_s)).value_or(0);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/candidates/candidates.hpp"
-#include "tools/diagnosis/candidates/scans.hpp"
 #include "tools/diagnosis/candidates/sliding.hpp"
+#include "tools/diagnosis/candidates/weighted_residual.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/effects/effect_internals.hpp"
 #include "tools/diagnosis/extension/extension_parts.hpp"
 #include "tools/diagnosis/output/plot_abscissa.hpp"
 
@@ -23,15 +23,15 @@ constexpr ParameterKind ripple_phase{"phase", "rad"};
 constexpr int fewest_cycles = 2;
 constexpr int most_cycles = 330; // harmonic drives up to 1:160 cause two cycles per motor turn
 
-struct RippleGain {
-    double gain = 0;
+struct RippleFit {
+    double explained = 0;
     int cycles = 0;
 };
 
 /// Sum of squares that a ripple would explain, for each number of cycles per turn. The noise level is that of
 /// the ripple's current frequency.
-std::vector<RippleGain> ripple_gains(const DiagnosisSignals& signals, const EffectRegression& regression,
-                                     const Eigen::MatrixXd& weighted, Eigen::Index joint) {
+std::vector<RippleFit> ripple_fits(const DiagnosisSignals& signals, const EffectRegression& regression,
+                                   const Eigen::MatrixXd& weighted, Eigen::Index joint) {
     const Eigen::ArrayXd position = signals.measured.motion.position.col(joint);
     const Eigen::ArrayXd velocity = signals.measured.motion.velocity.col(joint);
     const Eigen::ArrayXd wave_energy = 0.5 / regression.noise().col(joint).array(); // per bin
@@ -39,7 +39,7 @@ std::vector<RippleGain> ripple_gains(const DiagnosisSignals& signals, const Effe
     const std::complex<double> turn(0, 1);
     const Eigen::ArrayXcd once = (turn * position).exp();
     Eigen::ArrayXcd phase = (turn * static_cast<double>(fewest_cycles - 1) * position).exp();
-    std::vector<RippleGain> result;
+    std::vector<RippleFit> result;
     for (int cycles = fewest_cycles; cycles <= most_cycles; ++cycles) {
         phase *= once;
         const std::complex<double> product = (phase * weighted.col(joint).array()).sum();
@@ -55,16 +55,16 @@ std::vector<RippleGain> ripple_gains(const DiagnosisSignals& signals, const Effe
 }
 
 /// Returns the three best local maxima and their neighbours.
-std::vector<int> best_cycles(const std::vector<RippleGain>& gains) {
-    std::vector<RippleGain> peaks;
-    for (std::size_t i = 0; i < gains.size(); ++i) {
-        const bool above_last = i == 0 || gains[i].gain >= gains[i - 1].gain;
-        const bool above_next = i + 1 == gains.size() || gains[i].gain >= gains[i + 1].gain;
-        if (above_last && above_next && gains[i].gain > 0) {
-            peaks.push_back(gains[i]);
+std::vector<int> best_cycles(const std::vector<RippleFit>& fits) {
+    std::vector<RippleFit> peaks;
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+        const bool above_last = i == 0 || fits[i].explained >= fits[i - 1].explained;
+        const bool above_next = i + 1 == fits.size() || fits[i].explained >= fits[i + 1].explained;
+        if (above_last && above_next && fits[i].explained > 0) {
+            peaks.push_back(fits[i]);
         }
     }
-    std::ranges::sort(peaks, std::greater<>{}, &RippleGain::gain);
+    std::ranges::sort(peaks, std::greater<>{}, &RippleFit::explained);
     std::set<int> cycles;
     for (std::size_t i = 0; i < std::min<std::size_t>(3, peaks.size()); ++i) {
         for (int near = peaks[i].cycles - 1; near <= peaks[i].cycles + 1; ++near) {
@@ -89,10 +89,11 @@ class RippleScan : public EffectScan {
                 continue; // a slide has no turns
             }
             const std::vector<int> cycles = best_cycles(
-                ripple_gains(signals, residual.regression, weighted, static_cast<Eigen::Index>(joint)));
+                ripple_fits(signals, residual.regression, weighted, static_cast<Eigen::Index>(joint)));
             if (!cycles.empty()) {
                 result.push_back(ripple_candidate(signals, joint, cycles));
-                result.back().tried = static_cast<double>(most_cycles) / static_cast<double>(cycles.size());
+                result.back().prior_trials =
+                    static_cast<double>(most_cycles) / static_cast<double>(cycles.size());
             }
         }
         return result;

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/extension/corrected_robot.hpp"
 
+#include "tools/base/text/number.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/model/effects.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -39,17 +44,19 @@ void correct_links(RobotExport& result, const ModelExtension& extension) {
         const InertialParameters link = corrected_link(
             extension, first + body, extension.bodies.segment<10>(10 * static_cast<Eigen::Index>(body)));
         if (const auto fault = inertia_fault(link)) {
-            result.left_out.push_back(numbered("link", first + body) + " as found: " + *fault);
+            result.left_out.push_back(place_text(PlaceKind::link, first + body) + " as found: " + *fault);
         } else {
             result.robot.joints[first + body].inertia = link;
         }
     }
 }
 
+std::string output_place(OutputKind kind, std::size_t output) {
+    return kind == OutputKind::wrench ? "ft_sensor" : place_text(PlaceKind::joint, output);
+}
+
 std::string text_of(const ExtensionColumn& column, OutputKind kind) {
-    const auto output = static_cast<std::size_t>(column.effect.row);
-    return column.effect.name + " at " +
-           (kind == OutputKind::wrench ? "ft_sensor" : numbered("joint", output));
+    return column.effect.name + " at " + output_place(kind, static_cast<std::size_t>(column.effect.row));
 }
 
 /// Returns whether least squares of each joint determine a finding that the causes leave out.
@@ -59,16 +66,39 @@ bool has_column(const ModelExtension& extension, const ExtendedFinding& carried)
     });
 }
 
+/// Lists the rigid body's factors that plain least squares found: a robot has masses, and no gains.
+void list_gains(RobotExport& result, const ModelExtension& extension) {
+    constexpr double noticeable = 1e-3;
+    for (Eigen::Index output = 0; output < extension.least_squares_gain.size(); ++output) {
+        const double gain = extension.least_squares_gain[output];
+        if (std::abs(gain - 1) >= noticeable) {
+            result.left_out.push_back("factor " + rounded_text(gain) + " of the rigid body at " +
+                                      output_place(extension.kind, static_cast<std::size_t>(output)));
+        }
+    }
+}
+
+/// Lists the size of gravity where simulators would assume another one: a URDF contains none.
+void list_gravity(RobotExport& result) {
+    constexpr double usual = 9.81; // m/s²
+    constexpr double noticeable = 0.01;
+    const double size = result.robot.gravity.norm();
+    if (std::abs(size - usual) > noticeable) {
+        result.left_out.push_back("gravity of " + rounded_text(size) +
+                                  " m/s² in a URDF: simulators use 9.81");
+    }
+}
+
 } // namespace
 
-RobotExport corrected_robot(const ModelExtension& extension) {
+RobotExport corrected_robot(const ModelExtension& extension, const std::vector<std::string>& formats) {
     RobotExport result{extension.robot, std::vector<JointDynamics>(extension.robot.joints.size()), {}};
     correct_links(result, extension);
     for (const ExtensionColumn& column : extension.columns) {
         double JointDynamics::*const member = member_of(column.effect.name);
         const auto joint = static_cast<std::size_t>(column.effect.row);
         if (member != nullptr && column.value >= 0) {
-            result.joints[joint].*member += column.value;
+            result.joints[joint].*member += extension.least_squares_gain[column.effect.row] * column.value;
         } else {
             result.left_out.push_back(text_of(column, extension.kind));
         }
@@ -77,6 +107,10 @@ RobotExport corrected_robot(const ModelExtension& extension) {
         if (carried.how == EffectDisposition::left_out && !has_column(extension, carried)) {
             result.left_out.push_back(carried.effect + " at " + carried.where);
         }
+    }
+    list_gains(result, extension);
+    if (std::ranges::find(formats, "urdf") != formats.end()) {
+        list_gravity(result);
     }
     std::vector<std::string>& names = result.left_out; // the axes of a sensor have the same
     names.erase(std::unique(names.begin(), names.end()), names.end());

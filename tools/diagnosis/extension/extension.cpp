@@ -46,11 +46,22 @@ void exclude_from_gain(ModelExtension& extension, const Eigen::VectorXd& nominal
     }
 }
 
+/// Returns the coefficients of plain least squares of an output. The model is divided by the gain, which is
+/// therefore at least a tenth.
+Eigen::VectorXd divisible_coefficients(const DiagnosisWork& work, const TextbookFit& fit,
+                                       const Eigen::MatrixXd& rigid, Eigen::Index output) {
+    constexpr double least_gain = 0.1;
+    const Eigen::VectorXd coefficients = fit.coefficients.col(output);
+    return coefficients[0] >= least_gain
+               ? coefficients
+               : coefficients_with_gain(textbook_columns(*work.signals, rigid.col(output), output),
+                                        work.measured.col(output), least_gain);
+}
+
 /// Replaces the columns of an output by those of plain least squares, in addition to the rigid body.
 void take_least_squares(ModelExtension& extension, const DiagnosisWork& work, Eigen::Index output,
                         const Eigen::VectorXd& coefficients) {
-    constexpr double least_gain = 0.1;
-    const std::string joint = numbered("joint", static_cast<std::size_t>(output));
+    const std::string joint = place_text(PlaceKind::joint, static_cast<std::size_t>(output));
     std::erase_if(extension.columns,
                   [output](const ExtensionColumn& column) { return column.effect.row == output; });
     std::erase_if(extension.carried, [&joint](const ExtendedFinding& carried) {
@@ -66,7 +77,8 @@ void take_least_squares(ModelExtension& extension, const DiagnosisWork& work, Ei
             extension.carried.push_back({effect.name, joint, EffectDisposition::adapting});
         }
     }
-    const double gain = std::max(coefficients[0], least_gain);
+    const double gain = coefficients[0];
+    extension.least_squares_gain[output] = gain;
     extension.output_gain[output] = work.torque_gains[output] * gain;
     const auto add = [&](const EffectKind& kind, double coefficient) {
         EffectModel effect;
@@ -94,12 +106,12 @@ void take_least_squares(ModelExtension& extension, const DiagnosisWork& work) {
     const DiagnosisSignals& signals = *work.signals;
     const Eigen::VectorXd stacked =
         stacked_regressor(extension.robot, extension.kind, signals.measured.motion) * extension.bodies;
-    const TextbookFit fit =
-        textbook_fit(signals, work.measured, unstacked(stacked, signals.outputs()), signals.rows());
+    const Eigen::MatrixXd rigid = unstacked(stacked, signals.outputs());
+    const TextbookFit fit = textbook_fit(signals, work.measured, rigid, signals.rows());
     for (std::size_t output = 0; output < chosen.size(); ++output) {
         if (chosen[output]) {
             const auto at = static_cast<Eigen::Index>(output);
-            take_least_squares(extension, work, at, fit.coefficients.col(at));
+            take_least_squares(extension, work, at, divisible_coefficients(work, fit, rigid, at));
         }
     }
 }
@@ -108,12 +120,8 @@ void take_least_squares(ModelExtension& extension, const DiagnosisWork& work) {
 
 ModelExtension nominal_extension(const DiagnosisWork& work) {
     const DiagnosisSignals& signals = *work.signals;
-    return {signals.robot,
-            signals.kind,
-            nominal_parameters(signals.robot, signals.kind),
-            {},
-            work.torque_gains,
-            {}};
+    return {signals.robot,     signals.kind, nominal_parameters(signals.robot, signals.kind), {},
+            work.torque_gains, {},           Eigen::VectorXd::Ones(work.torque_gains.size())};
 }
 
 ModelExtension extension_of(const DiagnosisWork& work) {
@@ -134,8 +142,8 @@ ModelExtension extension_of(const DiagnosisWork& work) {
         extension.carried.push_back({candidate.effect, candidate.where, how});
     }
     for (const StationaryContact& push : work.pushes) {
-        extension.carried.push_back(
-            {effects::external_contact().name, numbered("joint", push.joint), EffectDisposition::left_out});
+        extension.carried.push_back({effects::external_contact().name,
+                                     place_text(PlaceKind::joint, push.joint), EffectDisposition::left_out});
     }
     exclude_from_gain(extension, work.torque_gains);
     add_nuisance(extension, work);

@@ -34,6 +34,9 @@ struct ModelExtension {
     std::vector<ExtensionColumn> columns; ///< in the order of the physics' columns
     Eigen::VectorXd output_gain;          ///< output per N·m (N)
     std::vector<ExtendedFinding> carried; ///< one per chosen effect
+    /// m: the rigid body's factor in plain least squares, which `output_gain` contains and by which the
+    /// output's columns are divided; 1 where the causes are the model
+    Eigen::VectorXd least_squares_gain;
 
     /// Returns the ten parameters of a link. `link`: from 0.
     auto body(Eigen::Index link) {

@@ -20,8 +20,7 @@ Eigen::Index ChosenEffect::output() const {
 }
 
 Eigen::Index ChosenEffect::number() const {
-    const std::size_t digits = candidate.where.find_first_of("0123456789");
-    return digits == std::string::npos ? 0 : std::stol(candidate.where.substr(digits)) - 1;
+    return static_cast<Eigen::Index>(numbered_place(candidate.where).value().index);
 }
 
 EffectModel on_joint(const ChosenEffect& chosen, const EffectKind& kind) {

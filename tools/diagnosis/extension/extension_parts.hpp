@@ -17,7 +17,9 @@ struct ChosenEffect {
     const Eigen::VectorXd& deviations;
 
     Eigen::Index output() const; ///< output of the first column in use
-    Eigen::Index number() const; ///< index of `jointK`, `linkK`, …, from 0
+    /// Returns the index of its place (`jointK`, `linkK`, …), from 0. Throws std::bad_optional_access for a
+    /// place without a number.
+    Eigen::Index number() const;
 };
 
 /// Returns a column of `kind` on the effect's output, with the diagnosis' uncertainty of the direction of

@@ -159,7 +159,7 @@ ReportTable error_table(const Diagnosis& diagnosis) {
     table.note +=
         " Errors are those of the samples as measured, at their own rate. Plain least squares: each "
         "output by itself, with a gain of the rigid body, inertia, viscous and dry friction and an offset.";
-    if (diagnosis.standing_share.maxCoeff() > noticeable_standing) {
+    if (diagnosis.standstill_share.maxCoeff() > noticeable_standstill) {
         add_moving_errors(table, diagnosis);
     }
     return table;
@@ -189,7 +189,7 @@ ReportTable findings_table(const DiagnosisCase& one) {
                       {}};
     table.note =
         "Confidence: of all causes that are given 0.9, about nine in ten are right. Errors: rms over " +
-        diagnosis.scope + ", below " + rounded_text(gains_below_hz) +
+        diagnosis.scope + ", below " + rounded_text(reduction_below_hz) +
         " Hz (all of it, for what shows above only), without and with this one effect, in N·m or N. Extended "
         "model: adapting, as coefficients that start here and go on being learned; constant, in its "
         "geometry, gravity or gains; as Coulomb friction of the same level, for the model's columns have no "
@@ -285,7 +285,7 @@ std::string diagnosis_page(const DiagnosisCase& one) {
     if (!diagnosis.suspicions.empty()) {
         page.sections.push_back(suspicion_section(diagnosis));
     }
-    if (answered(one.work)) {
+    if (effects_fitted(one.work)) {
         page.sections.push_back(overview_section(one));
         page.sections.push_back(comparison_section(one.work, one.full_data));
         for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {

@@ -29,11 +29,11 @@ void print_suspicions(std::ostream& out, const Diagnosis& diagnosis) {
 
 /// Returns the error without standstill as text; empty if the share of standstill is negligible.
 std::string while_moving(const Diagnosis& diagnosis, Eigen::Index output) {
-    if (!(diagnosis.standing_share[output] > noticeable_standing)) {
+    if (!(diagnosis.standstill_share[output] > noticeable_standstill)) {
         return "";
     }
     const double nominal = diagnosis.nominal.moving_nrmse[output];
-    return std::isnan(nominal) ? ", all of it while the joint stands"
+    return std::isnan(nominal) ? ", all of it at standstill"
                                : "; while it moves " + percent(nominal) + " -> " +
                                      percent(diagnosis.extended.moving_nrmse[output]);
 }

@@ -111,7 +111,7 @@ ChartCurve error_spectrum(const SpectralRows& rows, std::string name, const Eige
     const double frames = std::max(rows.filled(output).sum(), 1e-9);
     const Eigen::VectorXd power = rows.analyse(error, output).rowwise().squaredNorm() / frames;
     ChartCurve curve{std::move(name), {}, {}, {}, {}};
-    for (Eigen::Index bin = 0; bin < rows.answered_bins(output); ++bin) {
+    for (Eigen::Index bin = 0; bin < rows.bins_in_bandwidth(output); ++bin) {
         curve.x.push_back(rows.frequency_hz(bin));
         curve.y.push_back(std::sqrt(std::max(power[bin], least_power)));
     }

@@ -12,8 +12,7 @@
 namespace dfdyn::tools {
 
 Eigen::Index PlottedFinding::joint() const {
-    const std::size_t digits = finding.where.find_first_of("0123456789");
-    return digits == std::string::npos ? 0 : std::stol(finding.where.substr(digits)) - 1;
+    return static_cast<Eigen::Index>(numbered_place(finding.where).value().index);
 }
 
 std::string PlottedFinding::named(const char* what, const char* unit) const {

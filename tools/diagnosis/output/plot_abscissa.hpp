@@ -25,7 +25,9 @@ struct PlottedFinding {
     const Finding& finding;
     const Eigen::VectorXd& share; ///< T: contribution to its output
 
-    Eigen::Index joint() const; ///< index of `jointK`, from 0
+    /// Returns the index of the finding's joint (`jointK`, `encoderK`), from 0. Throws
+    /// std::bad_optional_access for a place without a number.
+    Eigen::Index joint() const;
     /// Returns `velocity of joint 2 (rad/s)`. `unit`: at a revolute joint.
     std::string named(const char* what, const char* unit) const;
     /// value of a parameter; 0 if the finding has none with this name

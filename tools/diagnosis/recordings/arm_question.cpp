@@ -244,7 +244,7 @@ class HypothesisSearch {
     }
 
     std::optional<ArmHypothesis> best_hypothesis() const {
-        constexpr double tie = 5; // log-evidence: odds of 150
+        constexpr double min_distinct_margin = 5; // log-evidence: odds of 150
         std::vector<ArmHypothesis> all = possible_hypotheses();
         std::ranges::stable_sort(all, std::ranges::greater(), &ArmHypothesis::margin);
         if (all.empty() || all.front().margin < least_evidence) {
@@ -252,7 +252,7 @@ class HypothesisSearch {
         }
         ArmHypothesis best = std::move(all.front());
         for (std::size_t i = 1; best.body && i < all.size(); ++i) {
-            if (all[i].body && all[i].margin > best.margin - tie) {
+            if (all[i].body && all[i].margin > best.margin - min_distinct_margin) {
                 best.others.push_back(*all[i].body);
             }
         }

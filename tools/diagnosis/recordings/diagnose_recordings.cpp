@@ -16,15 +16,17 @@ DiagnosisWork diagnose_recordings(const Robot& robot, std::vector<Recording>& re
     std::size_t rounds = 0;
     options.progress = [&](int) { progress.update(++rounds); };
     options.parts = recordings;
+    if (recordings.size() > 1 && refuses_setup(robot, joined_recording(recordings), options)) {
+        return diagnose(robot, joined_recording(recordings), options); // states the reasons
+    }
     const SeveralRecordings several = fit_recordings(robot, recordings, options, loads_differ);
-    if (loads_differ && !several.answered()) {
+    if (loads_differ && !several.fitted()) {
         throw InputError("--changed payload: expected at least two recordings of two seconds without a "
                          "gap, found " +
                          std::to_string(several.pooled.size()));
     }
     options.torque_gains = several.torque_gains;
-    if (loads_differ && !several.answer.loads.empty() &&
-        !refuses_setup(robot, joined_recording(recordings), options)) {
+    if (loads_differ && !several.answer.loads.empty()) {
         take_loads_off(recordings, robot, several, options.outputs);
     }
     DiagnosisWork work = diagnose(robot, joined_recording(recordings), options);

@@ -7,8 +7,8 @@
 
 namespace dfdyn::tools {
 
-/// Diagnoses recordings of one arm as one question, and shows the progress. Fits what they have in common,
-/// diagnoses the joined recording, and names causes by both (`name_from_recordings`).
+/// Diagnoses recordings of one arm as one question, and shows the progress. Checks their set-ups, fits what
+/// they have in common, diagnoses the joined recording, and names causes by both (`name_from_recordings`).
 ///
 /// `loads_differ`: each recording can have a load of its own. The loads that are found in single recordings
 /// are subtracted from the outputs in `recordings`, unless the set-up is refused. Throws InputError if fewer

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <utility>
@@ -35,8 +36,8 @@ double load_confidence(double margin) {
 class BodyNamer {
   public:
     BodyNamer(DiagnosisWork& work, const SeveralRecordings& several, const std::vector<double>& ends_s,
-              const Gains& gains)
-        : work_(work), signals_(*work.signals), several_(several), ends_s_(ends_s), gains_(gains) {}
+              const ErrorReduction& reduction)
+        : work_(work), signals_(*work.signals), several_(several), ends_s_(ends_s), reduction_(reduction) {}
 
     /// Names the links that all recordings support, and doubts other errors of links and payloads.
     void name_links() {
@@ -61,14 +62,14 @@ class BodyNamer {
     void doubt_loads_at_borders() {
         constexpr double near_s = 2;
         for (Finding& one : findings()) {
-            const bool taken = one.effect == effects::payload().name && one.parameters.size() > 4;
+            const bool taken = is_taken(one);
             const double time_s = taken ? one.parameters.back().value : 0;
-            const bool at_border = std::ranges::any_of(ends_s_, [&](double end_s) {
+            const auto border = std::ranges::find_if(ends_s_, [&](double end_s) {
                 return time_s > end_s - near_s && time_s < end_s + joined_pause_s + near_s;
             });
-            if (taken && at_border) {
+            if (taken && border != ends_s_.end()) {
                 one.confidence = std::min(one.confidence, unlikely);
-                one.evidence += " (it begins where a recording does: --changed payload seeks such loads)";
+                one.evidence += remark_at_border(static_cast<std::size_t>(border - ends_s_.begin()) + 1);
             }
         }
     }
@@ -91,12 +92,32 @@ class BodyNamer {
         return effect != nullptr && effect->each == Each::body;
     }
 
-    /// A load that was taken up on the way, with its time as a fifth parameter, was no hypothesis.
-    static bool is_load(const Finding& one) {
-        return one.effect == effects::payload().name && one.parameters.size() <= 4;
+    /// Returns whether a load was picked up on the way: its last parameter is the time.
+    static bool is_taken(const Finding& one) {
+        const Effect payload = effects::payload();
+        return one.effect == payload.name && !one.parameters.empty() &&
+               one.parameters.back().name == payload.parameters.back().name;
     }
 
-    std::string place(Index body) const { return numbered("link", signals_.link_of(body)); }
+    /// A load that was picked up on the way was no hypothesis.
+    static bool is_load(const Finding& one) {
+        return one.effect == effects::payload().name && !is_taken(one);
+    }
+
+    /// Describes a load that was taken up where recording `number` begins.
+    std::string remark_at_border(std::size_t number) const {
+        if (!several_.loads_differ) {
+            return " (it begins where a recording does: --changed payload seeks such loads)";
+        }
+        const bool subtracted = std::ranges::any_of(several_.answer.loads, [&](const RecordingLoad& load) {
+            return load.recording && several_.pooled[*load.recording] == number;
+        });
+        return std::string(" (it begins where a recording does, ") +
+               (subtracted ? "beside the load that is subtracted from this recording)"
+                           : "but all recordings together do not support a load of this recording)");
+    }
+
+    std::string place(Index body) const { return place_text(PlaceKind::link, signals_.link_of(body)); }
 
     const ArmHypothesis* supported_link(const std::string& where) const {
         const auto& links = several_.answer.wrong_links;
@@ -158,7 +179,7 @@ class BodyNamer {
     }
 
     static std::string load_remark(const Finding& load) {
-        return "a load of " + number_text(load.parameters.front().value) +
+        return "a load of " + rounded_text(load.parameters.front().value) +
                " kg, fitted to the whole recording, is subtracted from the outputs of " + load.only_in +
                ": errors, also those on held-out time, curves and the extended model are without it";
     }
@@ -166,7 +187,7 @@ class BodyNamer {
     void push(Finding finding, const MatrixXd& share) {
         finding.margin_to_others = std::numeric_limits<double>::infinity();
         finding.confirm = confirmation(finding);
-        gains_.tell(finding, share);
+        reduction_.describe(finding, share);
         findings().push_back(std::move(finding));
     }
 
@@ -174,14 +195,14 @@ class BodyNamer {
     const DiagnosisSignals& signals_;
     const SeveralRecordings& several_;
     const std::vector<double>& ends_s_;
-    const Gains& gains_;
+    const ErrorReduction& reduction_;
 };
 
 } // namespace
 
 void name_bodies(DiagnosisWork& work, const SeveralRecordings& several, const std::vector<double>& ends_s,
-                 const Gains& gains, bool fitted_everywhere) {
-    BodyNamer namer(work, several, ends_s, gains);
+                 const ErrorReduction& reduction, bool fitted_everywhere) {
+    BodyNamer namer(work, several, ends_s, reduction);
     namer.doubt_loads_at_borders();
     if (fitted_everywhere) {
         namer.name_links();

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/diagnosis/recordings/several_recordings.hpp"
-#include "tools/diagnosis/verdict/finding_gain.hpp"
+#include "tools/diagnosis/verdict/error_reduction.hpp"
 
 #include <vector>
 
@@ -12,6 +12,6 @@ namespace dfdyn::tools {
 /// wrong links and the load of all recordings, and doubts those that only the joined recording supports.
 /// `ends_s`: times of the last row of each recording in the joined one.
 void name_bodies(DiagnosisWork& work, const SeveralRecordings& several, const std::vector<double>& ends_s,
-                 const Gains& gains, bool fitted_everywhere);
+                 const ErrorReduction& reduction, bool fitted_everywhere);
 
 } // namespace dfdyn::tools

@@ -6,7 +6,7 @@
 #include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/diagnosis/recordings/consistency.hpp"
 #include "tools/diagnosis/recordings/name_bodies.hpp"
-#include "tools/diagnosis/verdict/finding_gain.hpp"
+#include "tools/diagnosis/verdict/error_reduction.hpp"
 #include "tools/diagnosis/verdict/findings.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
 #include "tools/diagnosis/verdict/joint_units.hpp"
@@ -34,14 +34,14 @@ class TermNamer {
     TermNamer(DiagnosisWork& work, const SeveralRecordings& several)
         : work_(work), signals_(*work.signals), several_(several), everywhere_(friction_everywhere(work)),
           rest_(everywhere_ ? rest_of_pooled() : work.rest),
-          gains_(signals_, rest_, work.diagnosis.output_names) {}
+          reduction_(signals_, rest_, work.diagnosis.output_names) {}
 
     bool everywhere() const { return everywhere_; }
-    const Gains& gains() const { return gains_; }
+    const ErrorReduction& reduction() const { return reduction_; }
 
     /// Replaces the findings at a joint (friction everywhere), or adds the pooled values to them.
     void name_terms(std::size_t joint) {
-        const std::string where = numbered("joint", joint);
+        const std::string where = place_text(PlaceKind::joint, joint);
         std::vector<Finding> better;
         for (const Effect& effect : effect_catalogue()) {
             if (effect.textbook && (everywhere_ || is_found(effect.name, where))) {
@@ -111,7 +111,7 @@ class TermNamer {
         const ParameterKind& kind = effect.parameters.front();
         Finding finding;
         finding.effect = effect.name;
-        finding.where = numbered("joint", joint);
+        finding.where = place_text(PlaceKind::joint, joint);
         finding.spread = fit().spread[at];
         const double of_recording = std::hypot(deviation, finding.spread);
         if (!effect.friction && everywhere_ && std::abs(value) < of_recording) {
@@ -128,7 +128,8 @@ class TermNamer {
         finding.confirm = confirmation(finding);
         MatrixXd share = MatrixXd::Zero(signals_.rows(), signals_.outputs());
         share.col(output) = value * columns(output).col(term);
-        if (gains_.tell(finding, share) || !everywhere_) {
+        reduction_.describe(finding, share);
+        if (reduces_error(finding) || !everywhere_) {
             better.push_back(std::move(finding));
         }
     }
@@ -163,7 +164,7 @@ class TermNamer {
     const SeveralRecordings& several_;
     bool everywhere_;
     MatrixXd rest_; ///< T x n
-    Gains gains_;
+    ErrorReduction reduction_;
 };
 
 /// Adds a suspicion for each recording without rows in the joined one, or without a part in the fit.
@@ -190,7 +191,7 @@ void add_missing(Diagnosis& diagnosis, const Eigen::VectorXd& time_s, const Seve
 
 void name_from_recordings(DiagnosisWork& work, const Robot& robot, const SeveralRecordings& several,
                           const std::vector<Recording>& recordings) {
-    if (!several.answered() || !answered(work)) {
+    if (!several.fitted() || !effects_fitted(work)) {
         return;
     }
     work.diagnosis.recordings = several.names;
@@ -199,10 +200,10 @@ void name_from_recordings(DiagnosisWork& work, const Robot& robot, const Several
     for (std::size_t joint = 0; joint < work.signals->joints(); ++joint) {
         namer.name_terms(joint);
     }
-    name_bodies(work, several, ends_s, namer.gains(), namer.everywhere());
+    name_bodies(work, several, ends_s, namer.reduction(), namer.everywhere());
     add_missing(work.diagnosis, work.signals->measured.time_s, several, ends_s);
     doubt_contradicted_findings(work, ends_s);
-    sort_by_gain(work.diagnosis.findings);
+    sort_by_reduction(work.diagnosis.findings);
     use_units_of_joints(work.diagnosis, robot);
     doubt_useless_findings(work.diagnosis);
 }

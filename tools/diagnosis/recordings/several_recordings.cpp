@@ -80,6 +80,7 @@ SeveralRecordings fit_recordings(const Robot& robot, const std::vector<Recording
                                  const DiagnosisOptions& options, bool loads_differ) {
     SeveralRecordings several;
     several.names = names_of(recordings);
+    several.loads_differ = loads_differ;
     std::vector<DiagnosisSignals> signals;
     for (std::size_t r = 0; r < recordings.size(); ++r) {
         if (options.outputs == OutputKind::wrench || recordings.size() < 2) {
@@ -92,7 +93,7 @@ SeveralRecordings fit_recordings(const Robot& robot, const std::vector<Recording
             signals.push_back(std::move(*one));
         }
     }
-    if (!several.answered()) {
+    if (!several.fitted()) {
         return several;
     }
     const bool gains_known =

@@ -16,9 +16,10 @@ struct SeveralRecordings {
     ArmAnswer answer;                ///< its recordings are those in `pooled`
     Eigen::VectorXd torque_gains;    ///< per output: measured unit per N·m (N)
     double seconds = 0;              ///< duration of all pooled recordings
+    bool loads_differ = false;       ///< loads of single recordings were sought
 
     /// Returns whether there is a fit: at least two recordings can be used.
-    bool answered() const { return pooled.size() > 1; }
+    bool fitted() const { return pooled.size() > 1; }
 };
 
 /// Fits several recordings at once, each with its own clock, filters and noise. There is no fit for fewer

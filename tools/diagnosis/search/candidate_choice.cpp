@@ -10,13 +10,12 @@ namespace {
 
 /// Returns the joint (from 0) at which a named candidate acts on measured torques; empty for other places.
 std::optional<std::size_t> own_joint(const DiagnosisSignals& signals, const Candidate& candidate) {
-    const std::string& where = candidate.where;
-    const bool at_joint = where.starts_with("joint") || where.starts_with("actuator");
-    const std::size_t digits = where.find_first_of("0123456789");
-    if (signals.wrench() || !candidate.named() || !at_joint || digits == std::string::npos) {
+    const std::optional<Place> place = numbered_place(candidate.where);
+    if (signals.wrench() || !candidate.named() || !place ||
+        (place->kind != PlaceKind::joint && place->kind != PlaceKind::actuator)) {
         return std::nullopt;
     }
-    return std::stoul(where.substr(digits)) - 1;
+    return place->index;
 }
 
 } // namespace
@@ -53,12 +52,12 @@ void set_classes(FittedEffects& effects) {
 
 Candidate relinearized(const Candidate& candidate, const EffectShape& shape,
                        const Eigen::VectorXd& coefficients) {
-    Candidate result = candidate.about(shape, coefficients);
+    Candidate result = candidate.relinearized_at(shape, coefficients);
     result.effect = candidate.effect;
     result.family = candidate.family;
     result.evidence_offset = candidate.evidence_offset;
-    result.tried = candidate.tried * static_cast<double>(candidate.shapes.size()) /
-                   static_cast<double>(result.shapes.size());
+    result.prior_trials = candidate.prior_trials * static_cast<double>(candidate.shapes.size()) /
+                          static_cast<double>(result.shapes.size());
     return result;
 }
 
@@ -90,7 +89,7 @@ std::vector<KeptChoice> kept_choices(const FittedEffects& effects) {
     for (const ChosenShape& one : effects.chosen) {
         const Candidate& candidate = effects.candidates[one.candidate];
         kept.push_back({candidate.key(), one.shape, {}});
-        if (candidate.about) {
+        if (candidate.relinearized_at) {
             kept.back().columns = candidate.shapes[one.shape].columns.size();
         }
     }
@@ -106,6 +105,9 @@ void choose_again(FittedEffects& effects, const std::vector<KeptChoice>& kept) {
         }
         const auto as_many = [&](const EffectShape& shape) { return shape.columns.size() == one.columns; };
         const auto same = std::ranges::find_if(found->shapes, as_many);
+        if (one.columns && same == found->shapes.end()) {
+            continue; // the motion does not determine it about this estimate
+        }
         effects.chosen.push_back(
             {static_cast<std::size_t>(found - effects.candidates.begin()),
              one.columns ? static_cast<std::size_t>(same - found->shapes.begin()) : one.shape});

@@ -37,7 +37,8 @@ struct CandidateEntry {
             candidate.shapes.push_back(std::move(near));
         }
         // neighbouring shapes do not count as alternatives
-        candidate.tried = static_cast<double>(own_shapes) / static_cast<double>(candidate.shapes.size());
+        candidate.prior_trials =
+            static_cast<double>(own_shapes) / static_cast<double>(candidate.shapes.size());
         complete(rows);
         return own_shapes;
     }

@@ -13,8 +13,8 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double least_gain = 1e-6;        ///< of the log-evidence: smaller differences are ignored
-constexpr double least_independent = 1e-3; ///< share of a column that is independent of the others
+constexpr double min_evidence_increase = 1e-6; ///< of the log-evidence: smaller differences are ignored
+constexpr double least_independent = 1e-3;     ///< share of a column that is independent of the others
 /// minimum share of a column, relative to its rest after the nuisance columns
 constexpr double least_beyond_nuisance = 0.1;
 constexpr std::size_t most_effects = 48;
@@ -23,9 +23,9 @@ const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const Chose
     return problem.candidates[chosen.candidate].shapes[chosen.shape];
 }
 
-/// Occam factor of coefficients that explain a sum of squares `explained`. The prior is uniform in the
-/// logarithm of their joint size over `orders` (of e), and uniform in direction.
-double price_of_coefficients(double count, double explained) {
+/// Negative logarithm of the Occam factor of coefficients that explain a sum of squares `explained`. The
+/// prior is uniform in the logarithm of their joint size over `orders` (of e), and uniform in direction.
+double occam_factor_of(double count, double explained) {
     constexpr double orders = 7; // from a twentieth to fifty times the smallest size that can be detected
     const double size = std::sqrt(std::max(explained, 1.0));
     const double sphere = std::log(2.0) + count / 2 * std::log(std::numbers::pi) - std::lgamma(count / 2);
@@ -34,14 +34,14 @@ double price_of_coefficients(double count, double explained) {
 
 /// Prior penalty of a candidate: for the number of candidates and shapes, and the Occam factor of its
 /// coefficients.
-double price(const SearchProblem& problem, const ChosenShape& chosen, double explained) {
+double prior_penalty(const SearchProblem& problem, const ChosenShape& chosen, double explained) {
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
     const SearchCandidate::Shape& shape = candidate.shapes[chosen.shape];
-    const double parameters = static_cast<double>(shape.columns.size()) - 0.5 * shape.bounded;
+    const double parameters = static_cast<double>(shape.columns.size()) - 0.5 * shape.bounded_count;
     return candidate.evidence_offset +
            std::log(candidate.candidates_of_class * static_cast<double>(candidate.shapes.size()) *
-                    candidate.tried) +
-           price_of_coefficients(parameters, explained);
+                    candidate.prior_trials) +
+           occam_factor_of(parameters, explained);
 }
 
 std::vector<Eigen::Index> columns_of(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
@@ -67,7 +67,9 @@ Eigen::MatrixXd system_of(const SearchProblem& problem, const std::vector<Eigen:
     return system;
 }
 
-double nuisance_price(const SearchProblem& problem, const Eigen::MatrixXd& system) {
+/// Negative logarithm of the Occam factor of the nuisance parameters: the logarithm of the ratio of their
+/// prior and posterior volumes, each for normal distributions.
+double nuisance_occam_factor(const SearchProblem& problem, const Eigen::MatrixXd& system) {
     const auto count = static_cast<Eigen::Index>(problem.nuisance.size());
     if (count == 0) {
         return 0;
@@ -82,7 +84,7 @@ double nuisance_price(const SearchProblem& problem, const Eigen::MatrixXd& syste
 
 /// Prior penalty of the nuisance coefficients: half the sum of their squares in units of their standard
 /// deviation.
-double price_of_nuisance(const SearchProblem& problem, const Eigen::VectorXd& coefficients) {
+double nuisance_prior_penalty(const SearchProblem& problem, const Eigen::VectorXd& coefficients) {
     double result = 0;
     for (std::size_t i = 0; i < problem.nuisance.size(); ++i) {
         const double deviations = coefficients[static_cast<Eigen::Index>(i)] / problem.nuisance[i].deviation;
@@ -94,25 +96,25 @@ double price_of_nuisance(const SearchProblem& problem, const Eigen::VectorXd& co
 /// Sum of squares that a shape explains in addition to a model. `left` and `moment`: products of the shape's
 /// columns with each other and with the target, after projection on the complement of the model. Returns
 /// minus infinity if the coefficients are not admissible or the columns are almost dependent on the model.
-double gain_of(const SearchCandidate::Shape& shape, const Eigen::VectorXd& own, const Eigen::MatrixXd& left,
-               const Eigen::VectorXd& moment) {
-    constexpr double never = -std::numeric_limits<double>::infinity();
+double explained_by(const SearchCandidate::Shape& shape, const Eigen::VectorXd& own,
+                    const Eigen::MatrixXd& left, const Eigen::VectorXd& moment) {
+    constexpr double inadmissible = -std::numeric_limits<double>::infinity();
     if ((left.diagonal().array() <= least_independent * own.array()).any()) {
-        return never;
+        return inadmissible;
     }
     const Eigen::LDLT<Eigen::MatrixXd> factor(left);
     if (!(factor.vectorD().array() > 1e-4 * left.diagonal().minCoeff()).all()) {
-        return never;
+        return inadmissible;
     }
     const Eigen::VectorXd coefficients = factor.solve(moment);
     if (shape.allowed(coefficients)) {
         return coefficients.dot(moment);
     }
     if (!shape.nearest) {
-        return never;
+        return inadmissible;
     }
     const Eigen::VectorXd nearest = shape.nearest(left, moment);
-    return shape.allowed(nearest) ? 2 * nearest.dot(moment) - nearest.dot(left * nearest) : never;
+    return shape.allowed(nearest) ? 2 * nearest.dot(moment) - nearest.dot(left * nearest) : inadmissible;
 }
 
 bool excludes(const std::vector<SearchCandidate>& candidates, std::size_t one, std::size_t other) {
@@ -127,7 +129,7 @@ struct Step {
 
 void keep_best(Step& best, const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
     const EffectFit fit = fit_effects(problem, chosen);
-    if (fit.allowed && fit.score > best.score + least_gain) {
+    if (fit.allowed && fit.score > best.score + min_evidence_increase) {
         best = {chosen, fit.score};
     }
 }
@@ -187,7 +189,7 @@ EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShap
     fit.coefficients = factor.solve(moment);
     fit.covariance = factor.solve(Eigen::MatrixXd::Identity(system.rows(), system.cols()));
     fit.explained = fit.coefficients.dot(moment);
-    fit.score = 0.5 * fit.explained - nuisance_price(problem, system);
+    fit.score = 0.5 * fit.explained - nuisance_occam_factor(problem, system);
     auto at = static_cast<Eigen::Index>(problem.nuisance.size());
     for (const ChosenShape& one : chosen) {
         const SearchCandidate::Shape& shape = shape_of(problem, one);
@@ -195,27 +197,25 @@ EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShap
         fit.allowed = fit.allowed && shape.allowed(fit.coefficients.segment(at, count));
         const Eigen::VectorXd own = fit.coefficients.segment(at, count);
         fit.score -=
-            price(problem, one, own.dot(fit.covariance.block(at, at, count, count).llt().solve(own)));
+            prior_penalty(problem, one, own.dot(fit.covariance.block(at, at, count, count).llt().solve(own)));
         at += count;
     }
     return fit;
 }
 
 double evidence_of(const SearchProblem& problem, const ChosenShape& chosen, double explained) {
-    return 0.5 * explained - price(problem, chosen, explained);
+    return 0.5 * explained - prior_penalty(problem, chosen, explained);
 }
 
-double held_out_score(const SearchProblem& problem, const std::vector<WeighedSums>& blocks,
+double held_out_score(const SearchProblem& problem, const std::vector<WeightedSums>& blocks,
                       const std::vector<ChosenShape>& chosen) {
     const std::vector<Eigen::Index> columns = columns_of(problem, chosen);
     const Eigen::MatrixXd system = system_of(problem, columns);
     const Eigen::VectorXd moment = problem.sums.moment(columns);
-    double score = -price_of_nuisance(problem, system.ldlt().solve(moment));
-    for (const WeighedSums& block : blocks) {
-        const Eigen::MatrixXd own = block.gram(columns, columns);
-        const Eigen::VectorXd own_moment = block.moment(columns);
-        const Eigen::VectorXd others = (system - own).ldlt().solve(moment - own_moment);
-        score += others.dot(own_moment) - 0.5 * others.dot(own * others);
+    double score = -nuisance_prior_penalty(problem, system.ldlt().solve(moment));
+    for (const WeightedSums& block : blocks) {
+        const WeightedSums own{block.gram(columns, columns), block.moment(columns)};
+        score += held_out_reduction(system - own.gram, moment - own.moment, own);
     }
     return score;
 }
@@ -230,14 +230,14 @@ Neighbours::Neighbours(const SearchProblem& problem, const std::vector<ChosenSha
     products_ = problem.sums.gram(columns_, Eigen::all);
     const Eigen::MatrixXd seen = factor.matrixL().solve(products_);
     const Eigen::VectorXd known = factor.matrixL().solve(moment);
-    score_ = 0.5 * coefficients_.dot(moment) - nuisance_price(problem, system);
+    score_ = 0.5 * coefficients_.dot(moment) - nuisance_occam_factor(problem, system);
     auto first = static_cast<Eigen::Index>(problem.nuisance.size());
     for (const ChosenShape& one : chosen) {
         first_.push_back(first);
         first += std::ssize(shape_of(problem, one).columns);
     }
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-        score_ -= price(problem, chosen[i], returned(i).moment.squaredNorm());
+        score_ -= prior_penalty(problem, chosen[i], returned(i).moment.squaredNorm());
     }
     for (const SearchCandidate& candidate : problem.candidates) {
         for (const SearchCandidate::Shape& shape : candidate.shapes) {
@@ -263,7 +263,7 @@ Neighbours::Returned Neighbours::returned(std::size_t index) const {
 
 double Neighbours::score_without(std::size_t index) const {
     const double explained = returned(index).moment.squaredNorm();
-    return score_ + price(problem_, chosen_[index], explained) - 0.5 * explained;
+    return score_ + prior_penalty(problem_, chosen_[index], explained) - 0.5 * explained;
 }
 
 std::vector<Replacement> Neighbours::additions() const {
@@ -293,11 +293,12 @@ std::vector<Replacement> Neighbours::ranked(const std::vector<ChosenShape>& chos
         for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
             const Beyond& left = first[static_cast<std::ptrdiff_t>(shape)];
             const Eigen::MatrixXd back = returned.columns(Eigen::all, shapes[shape].columns);
-            const double gain = gain_of(shapes[shape], left.own, left.left + back.transpose() * back,
-                                        left.moment + back.transpose() * returned.moment);
+            const double explained =
+                explained_by(shapes[shape], left.own, left.left + back.transpose() * back,
+                             left.moment + back.transpose() * returned.moment);
             const ChosenShape one{index, shape};
-            const double score = base + 0.5 * gain - price(problem_, one, gain);
-            if (gain > 0 && score > best.score) {
+            const double score = base + 0.5 * explained - prior_penalty(problem_, one, explained);
+            if (explained > 0 && score > best.score) {
                 best = {one, score};
             }
         }
@@ -328,7 +329,7 @@ std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vecto
                 keep_best_addition(best, problem, fewer, near.exchanges(i));
             }
         }
-        const auto improved = [&] { return best.score > at.score + least_gain; };
+        const auto improved = [&] { return best.score > at.score + min_evidence_increase; };
         if (!improved()) {
             keep_best_in_place_of_two(best, problem, at.chosen);
         }

@@ -9,20 +9,21 @@
 
 namespace dfdyn::tools {
 
-/// A candidate in the search: columns of the regression.
+/// A candidate in the search: columns of the normal equations. The other members are those of `Candidate`.
 struct SearchCandidate {
+    /// As `EffectShape`; each coefficient that another one bounds counts half.
     struct Shape {
         std::vector<Eigen::Index> columns; ///< of the normal equations
         CoefficientRule allowed;
-        double bounded = 0; ///< number of coefficients that another one bounds; each counts half
+        double bounded_count = 0;
         NearestCoefficients nearest = {};
     };
     std::vector<Shape> shapes;
-    std::size_t family = 0;         ///< at most one candidate with the same number is chosen; 0: no family
+    std::size_t family = 0;         ///< number of its family; 0: no family
     double candidates_of_class = 1; ///< number of candidates of its class
-    double tried = 1;               ///< number of alternatives from which it was selected beforehand
-    double evidence_offset = 0;     ///< additional penalty
-    bool may_be_half = false;       ///< with a second effect it can resemble a third one
+    double prior_trials = 1;
+    double evidence_offset = 0;
+    bool may_be_half = false; ///< with a second effect it can resemble a third one
 };
 
 /// A candidate and one of its shapes.
@@ -38,7 +39,7 @@ struct NuisanceColumn {
 };
 
 struct SearchProblem {
-    WeighedSums sums;
+    WeightedSums sums;
     std::vector<SearchCandidate> candidates;
     std::vector<NuisanceColumn> nuisance;
 };
@@ -69,7 +70,7 @@ double evidence_of(const SearchProblem& problem, const ChosenShape& chosen, doub
 /// Leave-one-block-out cross-validation score: the reduction of half the sum of squares in each block by the
 /// fit to all other blocks, summed over the blocks. The prior penalty of the nuisance coefficients is
 /// subtracted, because they could replace a removed effect. `blocks`: their sum is the problem's sums.
-double held_out_score(const SearchProblem& problem, const std::vector<WeighedSums>& blocks,
+double held_out_score(const SearchProblem& problem, const std::vector<WeightedSums>& blocks,
                       const std::vector<ChosenShape>& chosen);
 
 /// Returns `chosen` without the entry at `index`.

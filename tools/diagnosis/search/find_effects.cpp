@@ -2,8 +2,8 @@
 #include "tools/diagnosis/search/fitted_effects.hpp"
 
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
-#include "tools/diagnosis/candidates/candidates.hpp"
-#include "tools/diagnosis/candidates/scans.hpp"
+#include "tools/diagnosis/candidates/dependence_candidates.hpp"
+#include "tools/diagnosis/candidates/weighted_residual.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/search/candidate_choice.hpp"
 #include "tools/diagnosis/search/candidate_entry.hpp"
@@ -30,8 +30,8 @@ class Search {
            bool with_yielding)
         : signals_(signals), options_(options), rows_(signals.measured),
           regression_(rows_, measured - signals.nominal, rows_.frames_within(options.fitted_share)),
-          nuisance_(signals, rows_, options.gains_known, result_) {
-        for (Candidate& candidate : lasting_candidates(signals_, options_.effects)) {
+          result_(model_without_effects(signals, options.gains_known)), nuisance_(signals, rows_, result_) {
+        for (Candidate& candidate : static_candidates(signals_, options_.effects)) {
             if (visible(signals_, candidate) && (with_yielding || !yields(candidate))) {
                 static_.emplace_back(rows_, std::move(candidate));
             }
@@ -50,7 +50,7 @@ class Search {
     }
 
     FittedEffects run() {
-        settle();
+        search_in_rounds();
         prune(result_, regression_);
         make_robust(result_, regression_);
         weigh_with_lags();
@@ -62,7 +62,7 @@ class Search {
     bool chose_yielding() const { return chose_yielding_; }
 
   private:
-    void settle();
+    void search_in_rounds();
     FittedModel fitted_model(bool gains_may_err) const;
     FittedResidual fitted_residual() const;
     void add(std::vector<Candidate>& found, std::vector<Candidate> more) const;
@@ -93,7 +93,7 @@ class Search {
 };
 
 /// Searches in rounds until nothing changes.
-void Search::settle() {
+void Search::search_in_rounds() {
     std::vector<std::string> last;
     for (int round = 0; round < most_rounds; ++round) {
         if (options_.progress) {
@@ -123,7 +123,7 @@ void Search::settle() {
 
 FittedModel Search::fitted_model(bool gains_may_err) const {
     const auto of = [&](bool Effect::*trait, bool value) {
-        return result_.effects(signals_, [trait, value](const Candidate& candidate) {
+        return result_.contribution_of(signals_, [trait, value](const Candidate& candidate) {
             return has_trait(candidate.effect, trait) == value;
         });
     };
@@ -164,7 +164,7 @@ void Search::add(std::vector<Candidate>& found, std::vector<Candidate> more) con
     }
 }
 
-/// Adds what a scan finds in the residual, and sets the prices of its effect.
+/// Adds what a scan finds in the residual, and sets the evidence offsets of its effect.
 void Search::add_scanned(std::vector<Candidate>& found, const Effect& effect, const EffectScan& scan,
                          const FittedResidual& residual) const {
     std::vector<Candidate> more = scan.candidates(residual);
@@ -178,7 +178,7 @@ void Search::add_scanned(std::vector<Candidate>& found, const Effect& effect, co
             own.push_back(&candidate);
         }
     }
-    scan.set_prices(own, residual);
+    scan.set_evidence_offsets(own, residual);
 }
 
 /// Returns the candidates that depend on the current model.
@@ -188,7 +188,7 @@ std::vector<CandidateEntry> Search::model_dependent(bool gains_may_err) const {
     add(found, relinearized_always(result_));
     for (std::size_t i = 0; i < result_.chosen.size(); ++i) {
         const Candidate& chosen = result_.candidates[result_.chosen[i].candidate];
-        if (chosen.about && !chosen.always_relinearized) {
+        if (chosen.relinearized_at && !chosen.always_relinearized) {
             const Eigen::Index first = result_.first_column(i);
             add(found,
                 {relinearized(chosen, chosen.shapes[result_.chosen[i].shape],
@@ -231,11 +231,11 @@ void Search::set_candidates(const std::vector<const CandidateEntry*>& entries) {
     for (const CandidateEntry* const entry : entries) {
         SearchCandidate candidate;
         candidate.family = families.emplace(entry->candidate.family, families.size()).first->second;
-        candidate.tried = entry->candidate.tried;
+        candidate.prior_trials = entry->candidate.prior_trials;
         candidate.evidence_offset = entry->candidate.evidence_offset;
         candidate.may_be_half = yields(entry->candidate) || entry->candidate.always_relinearized;
         for (const EffectShape& shape : entry->candidate.shapes) {
-            SearchCandidate::Shape one{{}, shape.allowed, shape.bounded, shape.nearest};
+            SearchCandidate::Shape one{{}, shape.allowed, shape.bounded_count, shape.nearest};
             for (const std::size_t column : shape.columns) {
                 one.columns.push_back(static_cast<Eigen::Index>(columns.size() + column));
             }

@@ -72,8 +72,8 @@ Eigen::MatrixXd FittedEffects::of_fit(const DiagnosisSignals& signals, const Eff
     return sum;
 }
 
-Eigen::MatrixXd FittedEffects::effects(const DiagnosisSignals& signals,
-                                       const std::function<bool(const Candidate&)>& wanted) const {
+Eigen::MatrixXd FittedEffects::contribution_of(const DiagnosisSignals& signals,
+                                               const std::function<bool(const Candidate&)>& wanted) const {
     return of_fit(signals, fit, wanted);
 }
 
@@ -86,11 +86,11 @@ Eigen::MatrixXd FittedEffects::with_nuisance(const DiagnosisSignals& signals, co
     return sum;
 }
 
-Eigen::MatrixXd FittedEffects::all(const DiagnosisSignals& signals) const {
+Eigen::MatrixXd FittedEffects::total_contribution(const DiagnosisSignals& signals) const {
     return with_nuisance(signals, fit, [](const Candidate&) { return true; });
 }
 
-Eigen::MatrixXd FittedEffects::model(const DiagnosisSignals& signals) const {
+Eigen::MatrixXd FittedEffects::reported_contribution(const DiagnosisSignals& signals) const {
     return with_nuisance(signals, values, &Candidate::named);
 }
 

@@ -40,12 +40,12 @@ struct FittedEffects {
     std::vector<bool> inexact;
 
     /// Returns the contribution (T x m) of the `wanted` chosen effects to the outputs, by `fit`.
-    Eigen::MatrixXd effects(const DiagnosisSignals& signals,
-                            const std::function<bool(const Candidate&)>& wanted) const;
+    Eigen::MatrixXd contribution_of(const DiagnosisSignals& signals,
+                                    const std::function<bool(const Candidate&)>& wanted) const;
     /// Returns the contribution (T x m) of all effects and nuisance parameters, by `fit`.
-    Eigen::MatrixXd all(const DiagnosisSignals& signals) const;
+    Eigen::MatrixXd total_contribution(const DiagnosisSignals& signals) const;
     /// Returns the contribution (T x m) of the named effects and nuisance parameters, by `values`.
-    Eigen::MatrixXd model(const DiagnosisSignals& signals) const;
+    Eigen::MatrixXd reported_contribution(const DiagnosisSignals& signals) const;
     /// Coefficients of a chosen named candidate's shape, and their covariance, by `values`.
     Eigen::VectorXd coefficients(std::size_t chosen_index) const;
     Eigen::MatrixXd covariance(std::size_t chosen_index) const;

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <utility>
 
 namespace dfdyn::tools {
 
@@ -50,22 +49,24 @@ std::vector<EffectColumn> lag_columns(const JointSignals& joint) {
 
 } // namespace
 
+FittedEffects model_without_effects(const DiagnosisSignals& signals, bool gains_known) {
+    FittedEffects model;
+    model.nuisance = mass_columns(signals);
+    model.uncertain_masses = std::ssize(model.nuisance);
+    for (Eigen::Index joint = 0; !gains_known && joint < signals.outputs(); ++joint) {
+        model.nuisance.push_back(on_output(joint, signals.nominal.col(joint)));
+    }
+    return model;
+}
+
 NuisanceParameters::NuisanceParameters(const DiagnosisSignals& signals, const SpectralRows& rows,
-                                       bool gains_known, FittedEffects& fitted) {
-    const auto add_column = [&](const EffectColumn& column) {
+                                       const FittedEffects& model) {
+    const auto add = [&](const EffectColumn& column) {
         columns_.push_back(std::make_shared<const SpectralColumn>(rows, column));
     };
-    const auto add = [&](EffectColumn column, double deviation) {
-        add_column(column);
-        deviations_.push_back(deviation);
-        fitted.nuisance.push_back(std::move(column));
-    };
-    for (EffectColumn& column : mass_columns(signals)) {
-        add(std::move(column), mass_error);
-        ++fitted.uncertain_masses;
-    }
-    for (Eigen::Index joint = 0; !gains_known && joint < signals.outputs(); ++joint) {
-        add(on_output(joint, signals.nominal.col(joint)), any_gain);
+    for (const EffectColumn& column : model.nuisance) {
+        deviations_.push_back(std::ssize(deviations_) < model.uncertain_masses ? mass_error : any_gain);
+        add(column);
     }
     for (std::size_t number = 0; !signals.wrench() && number < signals.joints(); ++number) {
         if (signals.hardly_moves(number)) {
@@ -73,7 +74,7 @@ NuisanceParameters::NuisanceParameters(const DiagnosisSignals& signals, const Sp
         }
         const JointSignals joint(signals, number);
         for (const EffectColumn& column : lag_columns(joint)) {
-            add_column(column);
+            add(column);
             lag_joints_.push_back(joint.where);
         }
     }
@@ -92,9 +93,10 @@ std::vector<NuisanceColumn> NuisanceParameters::lags(const DiagnosisSignals& sig
     Eigen::Index column = std::ssize(deviations_);
     std::vector<NuisanceColumn> result;
     for (const std::string& joint : lag_joints_) {
-        const Eigen::MatrixXd friction = fitted.effects(signals, [&joint](const Candidate& candidate) {
-            return candidate.where == joint && is_dry_friction(candidate.effect);
-        });
+        const Eigen::MatrixXd friction =
+            fitted.contribution_of(signals, [&joint](const Candidate& candidate) {
+                return candidate.where == joint && is_dry_friction(candidate.effect);
+            });
         const double level = std::sqrt(friction.squaredNorm() / static_cast<double>(friction.rows()));
         result.push_back({column++, std::max(lag_share * level, no_friction)});
     }

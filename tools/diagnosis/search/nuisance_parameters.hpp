@@ -12,6 +12,10 @@
 
 namespace dfdyn::tools {
 
+/// Returns a model with nuisance columns only: of the links' masses and, unless `gains_known`, of the
+/// outputs' gains.
+FittedEffects model_without_effects(const DiagnosisSignals& signals, bool gains_known);
+
 /// Parameters of a model that are no finding. All models have errors of the links' masses and unknown torque
 /// constants. The way in which friction builds up after a reversal, its lag, is in no simulation exactly. The
 /// search has no lags, because their columns would compete with its candidates. The evidence of what it found
@@ -19,9 +23,8 @@ namespace dfdyn::tools {
 /// inertia.
 class NuisanceParameters {
   public:
-    /// Sets `fitted.nuisance` and `fitted.uncertain_masses`.
-    NuisanceParameters(const DiagnosisSignals& signals, const SpectralRows& rows, bool gains_known,
-                       FittedEffects& fitted);
+    /// `model`: with all nuisance columns, as from `model_without_effects`.
+    NuisanceParameters(const DiagnosisSignals& signals, const SpectralRows& rows, const FittedEffects& model);
 
     /// Returns the first columns of the normal equations: masses, gains, lags.
     const std::vector<SpectralColumnPointer>& columns() const { return columns_; }

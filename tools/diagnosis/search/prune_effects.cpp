@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr Eigen::Index validation_blocks = 6;
-constexpr double price_of_a_name = 5; ///< log-evidence: prior odds of 1 to 150
+constexpr double wrong_link_log_odds = 5; ///< prior log-odds (150 to 1) against an error of one link
 
 /// Returns whether the model with exact masses needs additional named effects, all of them errors of links.
 bool needs_links_only(const FittedEffects& at, const std::vector<ChosenShape>& exact) {
@@ -40,7 +40,7 @@ void decide_masses(FittedEffects& at, const EffectRegression& regression) {
     exact.nuisance.erase(exact.nuisance.begin(), exact.nuisance.begin() + at.uncertain_masses);
     const std::vector<ChosenShape> chosen = search_effects(exact, at.chosen);
     const EffectFit fit = fit_effects(exact, chosen);
-    if (fit.score + (needs_links_only(at, chosen) ? price_of_a_name : 0) >= at.fit.score) {
+    if (fit.score + (needs_links_only(at, chosen) ? wrong_link_log_odds : 0) >= at.fit.score) {
         at.problem = std::move(exact);
         at.chosen = chosen;
         at.fit = fit;
@@ -49,8 +49,8 @@ void decide_masses(FittedEffects& at, const EffectRegression& regression) {
     }
 }
 
-std::vector<WeighedSums> sums_of_blocks(const EffectRegression& regression) {
-    std::vector<WeighedSums> blocks;
+std::vector<WeightedSums> sums_of_blocks(const EffectRegression& regression) {
+    std::vector<WeightedSums> blocks;
     const Eigen::Index frames = regression.fitted_frames();
     for (Eigen::Index block = 0; block < validation_blocks; ++block) {
         const Eigen::Index first = block * frames / validation_blocks;
@@ -76,22 +76,22 @@ Eigen::VectorXd of_events(const FittedEffects& at, Eigen::Index columns) {
 /// Leave-one-block-out pruning: removes each persistent effect whose removal does not worsen the held-out
 /// prediction, also from the `promising` candidates. The events' contribution is subtracted from all blocks.
 /// Returns true if any effect was removed.
-bool keep_what_predicts(FittedEffects& at, const EffectRegression& regression, SearchProblem& promising) {
+bool prune_unpredictive(FittedEffects& at, const EffectRegression& regression, SearchProblem& promising) {
     if (regression.fitted_frames() < validation_blocks) {
         return false; // too few frames for cross-validation
     }
     SearchProblem problem = at.problem;
-    std::vector<WeighedSums> blocks = sums_of_blocks(regression);
+    std::vector<WeightedSums> blocks = sums_of_blocks(regression);
     const Eigen::VectorXd events = of_events(at, regression.columns());
     problem.sums.moment -= problem.sums.gram * events;
-    for (WeighedSums& block : blocks) {
+    for (WeightedSums& block : blocks) {
         block.moment -= block.gram * events;
     }
-    const auto lasting =
+    const auto persistent =
         std::stable_partition(at.chosen.begin(), at.chosen.end(),
                               [&at](const ChosenShape& one) { return at.candidates[one.candidate].event; });
-    std::vector<ChosenShape> kept(lasting, at.chosen.end());
-    at.chosen.erase(lasting, at.chosen.end());
+    std::vector<ChosenShape> kept(persistent, at.chosen.end());
+    at.chosen.erase(persistent, at.chosen.end());
     double best = held_out_score(problem, blocks, kept);
     bool dropped = false;
     while (true) {
@@ -117,7 +117,7 @@ bool keep_what_predicts(FittedEffects& at, const EffectRegression& regression, S
 /// Removes, one by one, named effects whose coefficients are inadmissible in the fit without unnamed effects.
 /// A removed effect is no longer a candidate of `promising` or of the model's problem. Returns true if any
 /// effect was removed.
-bool keep_what_is_allowed(FittedEffects& at, SearchProblem& promising) {
+bool prune_inadmissible(FittedEffects& at, SearchProblem& promising) {
     bool dropped = false;
     for (fit_named(at); !at.named.allowed; fit_named(at)) {
         const auto forbidden =
@@ -189,7 +189,7 @@ void fit_named(FittedEffects& at) {
 void prune(FittedEffects& at, const EffectRegression& regression) {
     decide_masses(at, regression);
     SearchProblem promising = at.problem; // without the shapes of removed effects
-    while (keep_what_predicts(at, regression, promising) || keep_what_is_allowed(at, promising)) {
+    while (prune_unpredictive(at, regression, promising) || prune_inadmissible(at, promising)) {
         at.chosen = search_effects(promising, at.chosen);
         at.fit = fit_effects(at.problem, at.chosen);
     }

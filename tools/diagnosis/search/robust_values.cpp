@@ -57,10 +57,10 @@ class Refit {
     /// `even`: per output, whether all frequencies have the same weight.
     EffectFit fit(const std::vector<ChosenShape>& chosen, const std::vector<bool>& even) {
         const Index all = by_noise_.front().gram.rows();
-        problem_.sums = WeighedSums::zero(all);
+        problem_.sums = WeightedSums::zero(all);
         MatrixXd scatter = MatrixXd::Zero(all, all); // covariance of the moments
         for (std::size_t output = 0; output < even.size(); ++output) {
-            const WeighedSums& own = even[output] ? evenly_[output] : by_noise_[output];
+            const WeightedSums& own = even[output] ? evenly_[output] : by_noise_[output];
             problem_.sums.gram += own.gram;
             problem_.sums.moment += own.moment;
             scatter += even[output] ? scatter_[output].gram : own.gram;
@@ -79,7 +79,7 @@ class Refit {
         std::vector<Index> result;
         for (Index i = 0; i < std::ssize(fit.columns); ++i) {
             const Index column = fit.columns[static_cast<std::size_t>(i)];
-            const auto acts = [column](const WeighedSums& one) { return one.gram(column, column) > 0; };
+            const auto acts = [column](const WeightedSums& one) { return one.gram(column, column) > 0; };
             if (acts(evenly_[static_cast<std::size_t>(output)]) &&
                 std::ranges::count_if(evenly_, acts) == 1) {
                 result.push_back(i);
@@ -89,9 +89,9 @@ class Refit {
     }
 
   private:
-    static std::vector<WeighedSums> sums_of_outputs(const FittedEffects& at,
-                                                    const EffectRegression& regression) {
-        std::vector<WeighedSums> sums;
+    static std::vector<WeightedSums> sums_of_outputs(const FittedEffects& at,
+                                                     const EffectRegression& regression) {
+        std::vector<WeightedSums> sums;
         for (Index output = 0; output < regression.outputs(); ++output) {
             sums.push_back(regression.sums_of_output(output, at.named.columns));
         }
@@ -99,18 +99,18 @@ class Refit {
     }
 
     SearchProblem problem_;
-    std::vector<WeighedSums> by_noise_, evenly_; ///< per output, with these weights
-    std::vector<WeighedSums> scatter_;           ///< covariances of the moments of `evenly_`
+    std::vector<WeightedSums> by_noise_, evenly_; ///< per output, with these weights
+    std::vector<WeightedSums> scatter_;           ///< covariances of the moments of `evenly_`
 };
 
 /// Returns whether noise cannot explain the difference of two fits. `even`: the one with the larger variance.
 bool contradict(const EffectFit& fit, const EffectFit& even, const std::vector<Index>& columns) {
     // the squared distance per column, at most 1 on average if the effects are right; of 91 outputs of
     // simulated arms (panel of seeds 331000 to 331119) 3 exceed 2, of the six of a real TX40 all
-    constexpr double far = 2;
+    constexpr double max_mean_square = 2;
     const VectorXd apart = even.coefficients(columns) - fit.coefficients(columns);
     return apart.dot(even.covariance(columns, columns).ldlt().solve(apart)) >
-           far * static_cast<double>(columns.size());
+           max_mean_square * static_cast<double>(columns.size());
 }
 
 /// Returns a persistent effect on the `inexact` outputs that `values` do not support: its coefficients are

@@ -51,7 +51,7 @@ const FoundParameter* dry_friction(const std::vector<FoundParameter>& parameters
 }
 
 Holding holding_at(const DiagnosisSignals& signals, const FittedEffects& fitted_effects, Eigen::Index joint) {
-    const std::string where = numbered("joint", static_cast<std::size_t>(joint));
+    const std::string where = place_text(PlaceKind::joint, static_cast<std::size_t>(joint));
     const std::vector<ChosenShape> named = fitted_effects.named_effects();
     Holding result;
     for (std::size_t i = 0; i < named.size(); ++i) {
@@ -126,7 +126,7 @@ struct StandPulse : EventWindow {
 };
 
 /// Robust standard deviation of the pulses of one length, from the median of their magnitudes.
-double usual_height(const std::vector<StandPulse>& pulses, std::size_t length) {
+double height_deviation(const std::vector<StandPulse>& pulses, std::size_t length) {
     std::vector<double> heights;
     for (const StandPulse& pulse : pulses) {
         if (pulse.length == length) {
@@ -143,23 +143,24 @@ class StandNoise {
   public:
     void add(const Eigen::VectorXd& stand, Eigen::Index apart) {
         for (Eigen::Index row = apart; row + apart < stand.size(); ++row) {
-            near_.push_back(std::abs(stand[row] - stand[row - 1]));
+            over_one_.push_back(std::abs(stand[row] - stand[row - 1]));
             const double bend = stand[row - apart] - 2 * stand[row] + stand[row + apart];
-            far_.push_back(std::abs(bend) / std::numbers::sqrt3); // varies as a change does
+            over_many_.push_back(std::abs(bend) / std::numbers::sqrt3); // varies as a change does
         }
     }
 
     /// Returns the variance of a row of white noise whose mean over many rows varies as much.
     double variance() const {
         constexpr double most_correlated = 0.99;
-        const double far = median(far_);
-        const double near = std::min(median(near_), far);
-        const double correlation = std::min(1 - std::pow(near / std::max(far, 1e-300), 2), most_correlated);
-        return std::pow(median_to_deviation * far, 2) / 2 * (1 + correlation) / (1 - correlation);
+        const double over_many = median(over_many_);
+        const double over_one = std::min(median(over_one_), over_many);
+        const double correlation =
+            std::min(1 - std::pow(over_one / std::max(over_many, 1e-300), 2), most_correlated);
+        return std::pow(median_to_deviation * over_many, 2) / 2 * (1 + correlation) / (1 - correlation);
     }
 
   private:
-    std::vector<double> near_, far_;
+    std::vector<double> over_one_, over_many_; ///< changes, by the number of rows
 };
 
 /// Searches for contacts at one joint during its standstills.
@@ -245,7 +246,7 @@ class JointStands {
         contact.joint = static_cast<std::size_t>(joint_);
         contact.pulse = {pulse.start_s, pulse.end_s, push_flanks * (pulse.end_s - pulse.start_s)};
         contact.change = pulse.height;
-        contact.change_deviation = usual_height(pulses_, pulse.length);
+        contact.change_deviation = height_deviation(pulses_, pulse.length);
         contact.noise = std::sqrt(2 * std::log(static_cast<double>(pulses_.size())) * noise_variance *
                                   fits_[pulse.length].variance());
         contact.held = 2 * holding.most;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/candidates/contact_pulse.hpp"
 #include "tools/diagnosis/search/fitted_effects.hpp"
 
 #include <vector>

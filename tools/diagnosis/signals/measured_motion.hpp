@@ -21,8 +21,8 @@ struct MeasuredMotion {
     Eigen::MatrixXd outputs; ///< T x m, filtered against aliasing only
     Eigen::VectorXd
         velocity_noise; ///< n, rad/s: standard deviation of the velocities that the position noise causes
-    Eigen::VectorXd answered_hz; ///< m: outputs are used up to this frequency; empty: without a limit
-    Eigen::MatrixXd weight;      ///< T x m, 0 to 1: weight of each row of an output; empty: all have weight 1
+    Eigen::VectorXd response_bandwidth_hz; ///< m: outputs are used up to it; empty: without a limit
+    Eigen::MatrixXd weight; ///< T x m, 0 to 1: weight of each row of an output; empty: all have weight 1
     std::vector<Stretch> stretches; ///< in order; none shorter than `shortest_stretch_s`
 
     static constexpr double shortest_stretch_s = 2;

@@ -64,7 +64,7 @@ Eigen::Index responding_bins(const SpectralRows& rows, const RigidTorque& torque
 
 } // namespace
 
-Eigen::VectorXd answered_hz(const DiagnosisSignals& signals) {
+Eigen::VectorXd response_bandwidth_hz(const DiagnosisSignals& signals) {
     Eigen::VectorXd result = Eigen::VectorXd::Constant(signals.outputs(), 2 * SpectralRows::highest_hz);
     const SpectralRows rows(signals.measured);
     for (Eigen::Index output = 0; !signals.wrench() && output < signals.outputs(); ++output) {

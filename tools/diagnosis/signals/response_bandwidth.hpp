@@ -10,6 +10,6 @@ namespace dfdyn::tools {
 /// vibration of the gear or the link, or position samples with wrong time stamps. A delayed response counts
 /// as a response. The result is twice the highest analysed frequency if no limit is found, and always for a
 /// wrench. Cost: three transforms per output.
-Eigen::VectorXd answered_hz(const DiagnosisSignals& signals);
+Eigen::VectorXd response_bandwidth_hz(const DiagnosisSignals& signals);
 
 } // namespace dfdyn::tools

@@ -4,6 +4,7 @@
 #include "tools/diagnosis/signals/low_pass_kernel.hpp"
 #include "tools/diagnosis/signals/response_bandwidth.hpp"
 #include "tools/diagnosis/signals/row_weight.hpp"
+#include "tools/robot/dynamics/friction_direction.hpp"
 #include "tools/robot/regressor.hpp"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ bool DiagnosisSignals::hardly_moves(std::size_t joint) const {
 }
 
 Eigen::VectorXd DiagnosisSignals::direction(Eigen::Index joint) const {
-    return (measured.motion.velocity.col(joint).array() / sign_velocity[joint]).tanh();
+    return friction_direction(measured.motion.velocity.col(joint), sign_velocity[joint]);
 }
 
 Eigen::VectorXd DiagnosisSignals::below(double cutoff_hz, const Eigen::VectorXd& series) const {
@@ -94,7 +95,7 @@ DiagnosisSignals diagnosis_signals(const Robot& robot, OutputKind kind, Measured
     signals.sensitivity = motion_sensitivity(robot, kind, motion);
     constexpr double slowest = 2e-3; // rad/s
     signals.sign_velocity = (2 * signals.measured.velocity_noise).cwiseMax(slowest);
-    signals.measured.answered_hz = answered_hz(signals);
+    signals.measured.response_bandwidth_hz = response_bandwidth_hz(signals);
     return signals;
 }
 

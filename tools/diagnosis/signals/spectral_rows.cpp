@@ -51,11 +51,12 @@ SpectralRows::SpectralRows(const MeasuredMotion& measured)
         weight_.setOnes(measured.time_s.size(), outputs);
     }
     filled_.resize(outputs, frames_);
-    unanswered_bins_.setZero(outputs);
+    bins_above_bandwidth_.setZero(outputs);
     for (Eigen::Index output = 0; output < outputs; ++output) {
         filled_.row(output) = filled_by(weight_.col(output));
-        for (Eigen::Index bin = 0; bin < bins() && measured.answered_hz.size() > 0; ++bin) {
-            unanswered_bins_[output] += frequency_hz(bin) > measured.answered_hz[output] ? 1 : 0;
+        for (Eigen::Index bin = 0; bin < bins() && measured.response_bandwidth_hz.size() > 0; ++bin) {
+            bins_above_bandwidth_[output] +=
+                frequency_hz(bin) > measured.response_bandwidth_hz[output] ? 1 : 0;
         }
     }
 }
@@ -88,19 +89,19 @@ Eigen::MatrixXd SpectralRows::analyse(const Eigen::VectorXd& series) const {
 
 Eigen::MatrixXd SpectralRows::analyse(const Eigen::VectorXd& series, Eigen::Index output) const {
     Eigen::MatrixXd result = analyse(series.cwiseProduct(weight_.col(output)));
-    result.bottomRows(unanswered_bins_[output]).setZero();
+    result.bottomRows(bins_above_bandwidth_[output]).setZero();
     return result;
 }
 
 Eigen::VectorXd SpectralRows::synthesise(const Eigen::MatrixXd& coefficients, Eigen::Index output) const {
     const Eigen::Index hop = transform_.hop();
-    Eigen::MatrixXd answered = coefficients;
-    answered.bottomRows(unanswered_bins_[output]).setZero();
+    Eigen::MatrixXd in_band = coefficients;
+    in_band.bottomRows(bins_above_bandwidth_[output]).setZero();
     Eigen::VectorXd series(weight_.rows());
     for (const PaddedStretch& stretch : stretches_) {
         series.segment(stretch.rows.first, stretch.rows.count) =
             transform_
-                .synthesise(answered.middleCols(stretch.first_frame, stretch.frames),
+                .synthesise(in_band.middleCols(stretch.first_frame, stretch.frames),
                             (stretch.frames + 1) * hop)
                 .segment(hop, stretch.rows.count);
     }

@@ -27,15 +27,16 @@ class SpectralRows {
     double frequency_hz(Eigen::Index bin) const noexcept {
         return (static_cast<double>(bin) + 0.5) / (2 * hop_s);
     }
-    /// Number of bins up to the highest frequency that `output` answers to; `analyse` sets the others to
-    /// zero.
-    Eigen::Index answered_bins(Eigen::Index output) const { return bins() - unanswered_bins_[output]; }
+    /// Number of bins up to the response bandwidth of `output`; `analyse` sets the others to zero.
+    Eigen::Index bins_in_bandwidth(Eigen::Index output) const {
+        return bins() - bins_above_bandwidth_[output];
+    }
     /// Returns the number of frames that do not overlap the rows after this share of the rows; at least one.
     Eigen::Index frames_within(double share) const;
 
     Eigen::MatrixXd analyse(const Eigen::VectorXd& series) const;
     /// Analyses a series that acts on `output`. Its rows have the weights `MeasuredMotion::weight`, and bins
-    /// above the output's `answered_hz` are zero.
+    /// above the output's `response_bandwidth_hz` are zero.
     Eigen::MatrixXd analyse(const Eigen::VectorXd& series, Eigen::Index output) const;
     /// Applies the transpose of `analyse` for `output`. Returns T values.
     Eigen::VectorXd synthesise(const Eigen::MatrixXd& coefficients, Eigen::Index output) const;
@@ -57,7 +58,7 @@ class SpectralRows {
     Eigen::MatrixXd weight_; ///< T x m
     Eigen::MatrixXd filled_; ///< m x frames
     /// m: number of the uppermost bins that are set to zero
-    Eigen::Vector<Eigen::Index, Eigen::Dynamic> unanswered_bins_;
+    Eigen::Vector<Eigen::Index, Eigen::Dynamic> bins_above_bandwidth_;
 };
 
 /// Returns the noise variance per bin from its coefficients (bins x frames): the mean square over all frames,

@@ -131,10 +131,10 @@ void measure_from(DiagnosisWork& work, Eigen::Index first, const FittedEffects& 
     const auto in_output_units = [&](const Eigen::MatrixXd& torques) -> Eigen::MatrixXd {
         return torques * work.torque_gains.asDiagonal();
     };
-    const RawSamples& samples = work.samples.outputs.rows() > 0
-                                    ? work.samples
-                                    : work.samples =
-                                          own_samples(signals.measured, in_output_units(work.measured));
+    if (work.samples.outputs.rows() == 0) {
+        work.samples = own_samples(signals.measured, in_output_units(work.measured));
+    }
+    const RawSamples& samples = work.samples;
     const Eigen::Index begin = samples.before(first);
     const Eigen::Index count = samples.outputs.rows() - begin;
     const Eigen::MatrixXd outputs = samples.outputs.bottomRows(count);
@@ -144,13 +144,13 @@ void measure_from(DiagnosisWork& work, Eigen::Index first, const FittedEffects& 
                              moving);
     };
     Diagnosis& diagnosis = work.diagnosis;
-    diagnosis.standing_share.resize(signals.outputs());
-    std::ranges::transform(moving, diagnosis.standing_share.begin(), [count](const auto& rows) {
+    diagnosis.standstill_share.resize(signals.outputs());
+    std::ranges::transform(moving, diagnosis.standstill_share.begin(), [count](const auto& rows) {
         return 1 - static_cast<double>(rows.size()) / static_cast<double>(count);
     });
     const Eigen::Index fitted = first > 0 ? first : signals.rows();
     diagnosis.nominal = measure(signals.nominal);
-    diagnosis.causes = measure(signals.nominal + fitted_effects.model(signals));
+    diagnosis.causes = measure(signals.nominal + fitted_effects.reported_contribution(signals));
     diagnosis.extended = diagnosis.causes;
     diagnosis.least_squares =
         measure(textbook_fit(signals, work.measured, signals.nominal, fitted).prediction);

@@ -3,10 +3,10 @@
 
 #include "tools/base/text/number.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
-#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/candidates/contact_pulse.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/search/candidate_choice.hpp"
-#include "tools/diagnosis/verdict/finding_gain.hpp"
+#include "tools/diagnosis/verdict/error_reduction.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
 #include "tools/robot/joint_unit.hpp"
 
@@ -21,22 +21,36 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double tie = 3; ///< log-odds of 20 to 1: causes with a smaller margin are indistinguishable
+/// Log-odds of 20 to 1. Causes with a smaller margin are indistinguishable.
+constexpr double min_distinct_margin = 3;
 constexpr double friction_error = 0.06;      ///< of a friction's evidence: error of its shape at reversals
-constexpr double price_of_shapes = 6;        ///< Occam factor of the three coefficients of a centre of mass
+constexpr double centre_occam_factor = 6;    ///< Occam factor of the three coefficients of a centre of mass
 constexpr std::size_t most_alternatives = 3; ///< of a finding
 constexpr std::size_t most_ties = 2;         ///< of a likely finding
 
+/// Returns whether one is an offset of a joint's encoder, and the other an error of its link whose centre of
+/// mass the motion does not determine along an axis. On an arm that moves in a plane, the offset moves the
+/// centre of mass within this plane.
+bool same_in_plane(const Candidate& offset, const Candidate& link) {
+    const std::optional<Place> encoder = numbered_place(offset.where);
+    const std::optional<Place> body = numbered_place(link.where);
+    return offset.effect == effects::encoder_offset().name && has_trait(link.effect, &Effect::mass_of_link) &&
+           encoder && body && encoder->index == body->index &&
+           std::ranges::any_of(link.shapes, [](const EffectShape& shape) { return shape.undetermined > 0; });
+}
+
 /// Returns the log-evidence below which another candidate is indistinguishable from the finding's own.
-/// Payload and last link, and friction and Coulomb friction, differ by less than their columns' errors.
+/// Payload and last link, friction and Coulomb friction, and an encoder's offset and a link in a plane,
+/// differ by less than their columns' errors.
 double least_margin(const Finding& finding, const Candidate& own, const Candidate& other) {
     const double evidence = finding.margin_to_nothing;
-    if (!other.span.empty() && other.span == own.span) {
-        return std::max(tie + price_of_shapes, model_error_share * evidence);
+    const bool same_span = !other.span.empty() && other.span == own.span;
+    if (same_span || same_in_plane(own, other) || same_in_plane(other, own)) {
+        return std::max(min_distinct_margin + centre_occam_factor, model_error_share * evidence);
     }
     const bool same_friction =
         own.where == other.where && has_trait(own.effect, &Effect::friction) && is_coulomb(other);
-    return same_friction ? std::max(tie, friction_error * evidence) : tie;
+    return same_friction ? std::max(min_distinct_margin, friction_error * evidence) : min_distinct_margin;
 }
 
 /// Determines the alternatives to a chosen effect, and their odds.
@@ -68,7 +82,7 @@ void weigh_alternatives(Finding& finding, const FittedEffects& fitted_effects, c
     }
 }
 
-/// Returns a chosen named effect as a finding, without its gain.
+/// Returns a chosen named effect as a finding, without its error reduction.
 Finding of_cause(const FittedEffects& fitted_effects, const Neighbours& near, std::size_t index,
                  double duration_s) {
     const Candidate& candidate = fitted_effects.candidates[fitted_effects.chosen[index].candidate];
@@ -92,7 +106,7 @@ Finding of_push(const StationaryContact& push) {
     constexpr double max_confidence = 0.95;
     Finding finding;
     finding.effect = effects::external_contact().name;
-    finding.where = numbered("joint", push.joint);
+    finding.where = place_text(PlaceKind::joint, push.joint);
     finding.detail = start_words(push.pulse);
     // Friction usually yields before the motor compensates: it balances between zero and its full range. The
     // pulse that is fitted has a flat top. The peak of a sinusoidal contact is up to 30 % higher (simulated).
@@ -117,7 +131,7 @@ std::string held_words(const StationaryContact& push, bool prismatic) {
         return rounded_text(value) + " ± " + rounded_text(deviations_of_95 * deviation) + " " +
                unit_at_joint("N·m", prismatic);
     };
-    return numbered("joint", push.joint) + " is stationary: its friction can change by " +
+    return place_text(PlaceKind::joint, push.joint) + " is stationary: its friction can change by " +
            interval(push.held, push.held_deviation) + ", noise by " + rounded_text(push.noise) +
            ", but its " + (prismatic ? "force" : "torque") + " changes by " +
            interval(std::abs(push.change), push.change_deviation) + "; ";
@@ -125,7 +139,7 @@ std::string held_words(const StationaryContact& push, bool prismatic) {
 
 /// Returns the chosen named effects that reduce the error.
 std::vector<Finding> of_causes(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
-                               const Gains& gains) {
+                               const ErrorReduction& reduction) {
     const double duration_s = static_cast<double>(signals.rows()) / signals.measured.rate_hz;
     const Neighbours near(fitted_effects.problem, fitted_effects.chosen);
     // named effects are the first of those chosen
@@ -134,8 +148,9 @@ std::vector<Finding> of_causes(const DiagnosisSignals& signals, const FittedEffe
     for (std::size_t i = 0; i < named.size(); ++i) {
         const std::string key = fitted_effects.candidates[named[i].candidate].key();
         Finding finding = of_cause(fitted_effects, near, i, duration_s);
-        if (gains.tell(finding, fitted_effects.effects(
-                                    signals, [&](const Candidate& one) { return one.key() == key; }))) {
+        reduction.describe(finding, fitted_effects.contribution_of(
+                                        signals, [&](const Candidate& one) { return one.key() == key; }));
+        if (reduces_error(finding)) {
             findings.push_back(std::move(finding));
         }
     }
@@ -143,13 +158,13 @@ std::vector<Finding> of_causes(const DiagnosisSignals& signals, const FittedEffe
 }
 
 std::vector<Finding> of_pushes(const DiagnosisSignals& signals, const std::vector<StationaryContact>& pushes,
-                               const Gains& gains) {
+                               const ErrorReduction& reduction) {
     std::vector<Finding> findings;
     for (const StationaryContact& push : pushes) {
         Finding finding = of_push(push);
         Eigen::MatrixXd contribution = Eigen::MatrixXd::Zero(signals.rows(), signals.outputs());
         contribution.col(static_cast<Eigen::Index>(push.joint)) = push.share;
-        gains.tell(finding, contribution);
+        reduction.describe(finding, contribution);
         finding.evidence = held_words(push, signals.robot.joints[push.joint].prismatic) + finding.evidence;
         findings.push_back(std::move(finding));
     }
@@ -165,9 +180,9 @@ bool same_contact(const Finding& one, const Finding& other) {
            start_s(other) < end_s(one) + apart_s;
 }
 
-/// A contact appears on several axes and in several pulses. Keeps the one with the largest gain.
+/// A contact appears on several axes and in several pulses. Keeps the one that reduces the error most.
 std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
-    sort_by_gain(findings);
+    sort_by_reduction(findings);
     std::vector<Finding> kept;
     for (Finding& finding : findings) {
         if (std::none_of(kept.begin(), kept.end(),
@@ -208,7 +223,7 @@ std::string confirmation(const Finding& finding) {
     return finding.where + ": " + effect_named(finding.effect).experiment;
 }
 
-void sort_by_gain(std::vector<Finding>& findings) {
+void sort_by_reduction(std::vector<Finding>& findings) {
     std::ranges::sort(findings, std::greater<>{},
                       [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
 }
@@ -225,13 +240,13 @@ double calibrated_confidence(const Finding& finding, double duration_s) {
 }
 
 void doubt_useless_findings(Diagnosis& diagnosis) {
-    constexpr double least_gain = 1.01;
+    constexpr double min_ratio = 1.01; // of the errors without and with the effect
     for (Finding& finding : diagnosis.findings) {
         const bool unexplained = diagnosis.extended.nrmse[finding.output] > 1;
-        const bool no_gain = !has_trait(finding.effect, &Effect::interval) &&
-                             finding.rms_before < least_gain * finding.rms_after;
+        const bool no_reduction = !has_trait(finding.effect, &Effect::interval) &&
+                                  finding.rms_before < min_ratio * finding.rms_after;
         const bool one_of_many = finding.indistinguishable.size() > most_ties;
-        if (unexplained || no_gain || one_of_many || may_be_none(finding)) {
+        if (unexplained || no_reduction || one_of_many || may_be_none(finding)) {
             finding.confidence = std::min(finding.confidence, unlikely);
         }
     }
@@ -240,12 +255,12 @@ void doubt_useless_findings(Diagnosis& diagnosis) {
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
                                  const std::vector<StationaryContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names) {
-    const Gains gains(signals, rest, output_names);
-    std::vector<Finding> findings = without_repeated_contacts(of_causes(signals, fitted_effects, gains));
-    for (Finding& push : of_pushes(signals, pushes, gains)) {
+    const ErrorReduction reduction(signals, rest, output_names);
+    std::vector<Finding> findings = without_repeated_contacts(of_causes(signals, fitted_effects, reduction));
+    for (Finding& push : of_pushes(signals, pushes, reduction)) {
         add_push(findings, std::move(push));
     }
-    sort_by_gain(findings);
+    sort_by_reduction(findings);
     return findings;
 }
 

@@ -6,8 +6,8 @@
 namespace dfdyn::tools {
 
 /// Returns the chosen effects and the contacts during standstill as findings, in descending
-/// order of gain, with parameters, intervals, confidence and alternatives. `rest` (T x m): residual after all
-/// of them.
+/// order of error reduction, with parameters, intervals, confidence and alternatives. `rest` (T x m):
+/// residual after all of them.
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
                                  const std::vector<StationaryContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names);
@@ -16,7 +16,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const FittedEf
 inline constexpr double unlikely = 0.49;
 
 /// Sorts by the ratio of the errors without and with each finding, largest first.
-void sort_by_gain(std::vector<Finding>& findings);
+void sort_by_reduction(std::vector<Finding>& findings);
 
 /// Returns the experiment that would decide whether the effect is present.
 std::string confirmation(const Finding& finding);

@@ -12,11 +12,10 @@ namespace {
 
 /// Returns whether a place is at a prismatic joint: its joint, encoder or actuator.
 bool at_prismatic_joint(const std::string& where, const Robot& robot) {
-    constexpr std::array of_joints{"joint", "encoder", "actuator"};
-    const std::size_t digits = where.find_first_of("0123456789");
-    return digits != std::string::npos &&
-           std::ranges::find(of_joints, where.substr(0, digits)) != of_joints.end() &&
-           robot.joints.at(std::stoul(where.substr(digits)) - 1).prismatic;
+    constexpr std::array of_joints{PlaceKind::joint, PlaceKind::encoder, PlaceKind::actuator};
+    const std::optional<Place> place = numbered_place(where);
+    return place && std::ranges::find(of_joints, place->kind) != of_joints.end() &&
+           robot.joints.at(place->index).prismatic;
 }
 
 } // namespace

@@ -44,9 +44,9 @@ std::vector<NuisanceEstimate> estimate_nuisances(const DiagnosisSignals& signals
         if (i < bodies) {
             const double mass = nominal[10 * i];
             result.push_back(
-                {numbered("link", signals.link_of(i)), mass_parameter(mass, factor, reach), mass});
+                {place_text(PlaceKind::link, signals.link_of(i)), mass_parameter(mass, factor, reach), mass});
         } else {
-            result.push_back({numbered("actuator", static_cast<std::size_t>(i - bodies)),
+            result.push_back({place_text(PlaceKind::actuator, static_cast<std::size_t>(i - bodies)),
                               constant_parameter(torque_gains[i - bodies], factor, reach), std::nullopt});
         }
     }

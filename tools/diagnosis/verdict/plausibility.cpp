@@ -5,6 +5,7 @@
 #include "tools/base/recording/stretches.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
+#include "tools/setup_check/setup_check.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -17,7 +18,6 @@ constexpr double least_duration_s = 3;
 
 // the diagnosis filters at a few Hz and needs a sufficient sampling rate
 constexpr double longest_step_s = 0.2;
-constexpr double shortest_step_s = 2e-5;
 
 void suspect_rate(const Recording& recording, std::vector<Suspicion>& result) {
     if (recording.row_count() >= 2 && !usable_rate(recording)) {
@@ -28,10 +28,13 @@ void suspect_rate(const Recording& recording, std::vector<Suspicion>& result) {
     }
 }
 
+/// The last row counts for a step, as the others do.
 void suspect_duration(const Recording& recording, std::vector<Suspicion>& result) {
-    const double duration_s =
-        recording.row_count() == 0 ? 0 : recording.time_s.back() - recording.time_s.front();
-    if (duration_s < least_duration_s) {
+    constexpr double rounding_s = 1e-6;
+    const double duration_s = recording.row_count() < 2 ? 0
+                                                        : recording.time_s.back() - recording.time_s.front() +
+                                                              median_step_s(recording);
+    if (duration_s < least_duration_s - rounding_s) {
         result.push_back({std::string("the recording is ") + rounded_text(duration_s) +
                               " s long: a diagnosis needs at least " + rounded_text(least_duration_s) +
                               " s, better 60",
@@ -100,7 +103,7 @@ Eigen::MatrixXd own_columns(const DiagnosisSignals& signals, Eigen::Index output
 /// friction and a spring explains. Outputs of joints at rest and constant outputs carry no information
 /// about the robot and are skipped.
 double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
-    constexpr double rounding = 1e-18; // of the squared size
+    constexpr double squared_rounding = 1e-18; // of the squared size
     const Eigen::Index size = block_rows(signals);
     double share = 0;
     int counted = 0;
@@ -108,7 +111,7 @@ double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& mea
         const Eigen::VectorXd means = block_means(measured.col(output), size);
         const double varied = (means.array() - means.mean()).square().sum();
         const bool at_rest = !signals.wrench() && signals.hardly_moves(static_cast<std::size_t>(output));
-        if (at_rest || !(varied > rounding * means.squaredNorm())) {
+        if (at_rest || !(varied > squared_rounding * means.squaredNorm())) {
             continue;
         }
         const Eigen::MatrixXd columns = own_columns(signals, output);

@@ -77,6 +77,13 @@ MatrixXd covariance_of(const WeightedFit& fit, const MatrixXd& sums, const Vecto
     return covariance;
 }
 
+/// Returns whether the fit of all columns determines the rigid body's factor: its column does not depend on
+/// the others.
+bool determines_gain(const WeightedFit& all) {
+    constexpr double independent_share = 0.01; // share of the rigid body's column
+    return all.scale[0] > 0 && all.inverse(0, 0) * independent_share < 1;
+}
+
 /// Applies the prior of the rigid body's factor (near 1), unless the data contradict it.
 void expect_gain_of_one(MovingFit& fit) {
     fit.another_gain = contradicts_known_gain(fit.values[0], fit.covariance(0, 0));
@@ -104,9 +111,10 @@ MatrixXd textbook_columns(const DiagnosisSignals& signals, const VectorXd& rigid
 }
 
 bool contradicts_known_gain(double gain, double variance) {
-    constexpr double far = 3;
+    constexpr double contradicting_deviations = 3;
     const double apart = 1 - gain;
-    return apart * apart > far * far * (variance + known_gain_deviation * known_gain_deviation);
+    return apart * apart > contradicting_deviations * contradicting_deviations *
+                               (variance + known_gain_deviation * known_gain_deviation);
 }
 
 VectorXd row_weight(const DiagnosisSignals& signals, Index output) {
@@ -118,13 +126,24 @@ double weighted_mean_square(const VectorXd& error, const VectorXd& weight) {
     return weight.dot(error.cwiseAbs2()) / std::max(weight.sum(), 1.0);
 }
 
+VectorXd coefficients_with_gain(const MatrixXd& columns, const VectorXd& measured, double gain) {
+    const VectorXd right = measured - gain * columns.col(0);
+    VectorXd coefficients(columns.cols());
+    coefficients << gain,
+        weighted_fit(columns.rightCols(columns.cols() - 1), VectorXd::Ones(columns.rows()), right).values;
+    return coefficients;
+}
+
 TextbookFit textbook_fit(const DiagnosisSignals& signals, const MatrixXd& measured, const MatrixXd& rigid,
                          Index rows) {
     TextbookFit fit{MatrixXd::Zero(5, measured.cols()), MatrixXd(measured.rows(), measured.cols())};
     for (Index output = 0; output < measured.cols(); ++output) {
         const MatrixXd columns = textbook_columns(signals, rigid.col(output), output);
+        const MatrixXd fitted = columns.topRows(rows);
+        const VectorXd right = measured.col(output).head(rows);
+        const WeightedFit all = weighted_fit(fitted, VectorXd::Ones(rows), right);
         fit.coefficients.col(output) =
-            weighted_fit(columns.topRows(rows), VectorXd::Ones(rows), measured.col(output).head(rows)).values;
+            determines_gain(all) ? all.values : coefficients_with_gain(fitted, right, 1);
         fit.prediction.col(output) = columns * fit.coefficients.col(output);
     }
     return fit;
@@ -132,11 +151,10 @@ TextbookFit textbook_fit(const DiagnosisSignals& signals, const MatrixXd& measur
 
 MovingFit fit_moving_rows(const DiagnosisSignals& signals, const VectorXd& measured, const VectorXd& rigid,
                           Index output, bool gain_known) {
-    constexpr double least_independent = 0.01; // share of the rigid body's column
     MovingFit fit{textbook_columns(signals, rigid, output), VectorXd(5), MatrixXd::Zero(5, 5)};
     const VectorXd weight = row_weight(signals, output);
     const WeightedFit all = weighted_fit(fit.columns, weight, measured);
-    const bool gain_seen = all.scale[0] > 0 && all.inverse(0, 0) * least_independent < 1;
+    const bool gain_seen = determines_gain(all);
     const Index first = gain_seen ? 0 : 1;
     const MatrixXd columns = fit.columns.rightCols(5 - first);
     const VectorXd right = gain_seen ? measured : VectorXd(measured - rigid);

@@ -21,8 +21,14 @@ struct TextbookFit {
 Eigen::MatrixXd textbook_columns(const DiagnosisSignals& signals, const Eigen::VectorXd& rigid,
                                  Eigen::Index output);
 
+/// Fits the coefficients of `textbook_columns` (T x 5) to `measured` (T) with this gain. Returns all five.
+/// All rows have the same weight.
+Eigen::VectorXd coefficients_with_gain(const Eigen::MatrixXd& columns, const Eigen::VectorXd& measured,
+                                       double gain);
+
 /// Fits the first `rows` rows of `measured`, T x m, with the rigid body's outputs `rigid`, T x m. All rows
-/// have the same weight. Cost: O(25 T m).
+/// have the same weight. Where the rigid body's column depends on the others, as at a slide, the gain is 1.
+/// Cost: O(25 T m).
 TextbookFit textbook_fit(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                          const Eigen::MatrixXd& rigid, Eigen::Index rows);
 

@@ -4,7 +4,7 @@
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/verdict/arm_fit.hpp"
-#include "tools/diagnosis/verdict/finding_gain.hpp"
+#include "tools/diagnosis/verdict/error_reduction.hpp"
 #include "tools/diagnosis/verdict/findings.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
 #include "tools/diagnosis/verdict/textbook.hpp"
@@ -34,7 +34,8 @@ double between_recordings(TextbookTerm term) {
 /// joint, so that only its size is uncertain.
 Finding finding_of(const DiagnosisWork& work, const Effect& effect, const MovingFit& fit, Index output,
                    bool everywhere) {
-    constexpr double price = 8; // least log-evidence of a cause with one coefficient in the panel's search
+    // least log-evidence of a cause with one coefficient in the panel's search
+    constexpr double one_coefficient_penalty = 8;
     const auto term = static_cast<Index>(*effect.textbook);
     const double value = fit.values[term];
     const double of_fit = std::max(std::sqrt(fit.covariance(term, term)), 1e-12);
@@ -45,12 +46,12 @@ Finding finding_of(const DiagnosisWork& work, const Effect& effect, const Moving
     const ParameterKind& kind = effect.parameters.front();
     Finding finding;
     finding.effect = effect.name;
-    finding.where = numbered("joint", static_cast<std::size_t>(output));
+    finding.where = place_text(PlaceKind::joint, static_cast<std::size_t>(output));
     const bool certain = everywhere && effect.friction;
     finding.parameters = {certain
                               ? positive_parameter(kind.name, kind.unit, value, deviation)
                               : FoundParameter{kind.name, kind.unit, value, value - reach, value + reach}};
-    finding.margin_to_nothing = 0.5 * std::pow(value / deviation, 2) - price;
+    finding.margin_to_nothing = 0.5 * std::pow(value / deviation, 2) - one_coefficient_penalty;
     finding.margin_to_others = std::numeric_limits<double>::infinity();
     const double duration_s = static_cast<double>(work.signals->rows()) / work.signals->measured.rate_hz;
     finding.confidence =
@@ -65,7 +66,7 @@ bool physically_possible(const Effect& effect, double value) {
 
 /// Returns the findings of a fit at an output's joint.
 std::vector<Finding> findings_at(const DiagnosisWork& work, const MovingFit& fit, Index output,
-                                 bool everywhere, const Gains& gains) {
+                                 bool everywhere, const ErrorReduction& reduction) {
     std::vector<Finding> findings;
     for (const Effect& effect : effect_catalogue()) {
         if (!effect.textbook ||
@@ -77,7 +78,11 @@ std::vector<Finding> findings_at(const DiagnosisWork& work, const MovingFit& fit
         const auto term = static_cast<Index>(*effect.textbook);
         share.col(output) = fit.values[term] * fit.columns.col(term);
         const bool supported = finding.margin_to_nothing > 0 || (everywhere && effect.friction);
-        if (supported && gains.tell(finding, share)) {
+        if (!supported) {
+            continue;
+        }
+        reduction.describe(finding, share);
+        if (reduces_error(finding)) {
             findings.push_back(std::move(finding));
         }
     }
@@ -106,7 +111,7 @@ std::vector<MovingFit> fit_outputs(DiagnosisWork& work) {
     const DiagnosisSignals& signals = *work.signals;
     Diagnosis& diagnosis = work.diagnosis;
     diagnosis.textbook = MatrixXd::Zero(5, signals.outputs());
-    work.extended = signals.nominal + work.fitted_effects.model(signals);
+    work.extended = signals.nominal + work.fitted_effects.reported_contribution(signals);
     const MatrixXd all_rows =
         textbook_fit(signals, work.measured, signals.nominal, signals.rows()).prediction;
     std::vector<MovingFit> fits;
@@ -181,17 +186,18 @@ void name_by_least_squares(DiagnosisWork& work) {
     for (const StationaryContact& push : work.pushes) {
         fit.rest.col(static_cast<Index>(push.joint)) -= push.share;
     }
-    const Gains gains(signals, fit.rest, work.diagnosis.output_names);
+    const ErrorReduction reduction(signals, fit.rest, work.diagnosis.output_names);
     for (std::size_t output = 0; !signals.wrench() && output < fit.joints.size(); ++output) {
         const MovingFit& own = fit.joints[output];
         if ((everywhere || work.diagnosis.by_least_squares[output]) && !signals.hardly_moves(output) &&
             own.blocks >= fewest_blocks) {
             replace_findings(work.diagnosis.findings,
-                             findings_at(work, own, static_cast<Index>(output), everywhere, gains),
-                             numbered("joint", output), numbered("actuator", output), own.another_gain);
+                             findings_at(work, own, static_cast<Index>(output), everywhere, reduction),
+                             place_text(PlaceKind::joint, output), place_text(PlaceKind::actuator, output),
+                             own.another_gain);
         }
     }
-    sort_by_gain(work.diagnosis.findings);
+    sort_by_reduction(work.diagnosis.findings);
 }
 
 } // namespace dfdyn::tools

@@ -4,8 +4,6 @@
 #include "tools/diagnosis/signals/smooth_functions.hpp"
 #include "tools/diagnosis/signals/spectral_rows.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,7 +60,7 @@ std::vector<InputFunctions> all_functions(const DiagnosisSignals& signals, const
 using BlockEdges = std::array<Eigen::Index, blocks + 1>;
 
 /// Returns the first frame of each block, and the end. All blocks have about the same weight, so that each
-/// shows a dependence also if the joint stands for long.
+/// shows a dependence also if the joint is stationary for long.
 BlockEdges block_edges(const Eigen::RowVectorXd& filled) {
     BlockEdges edges{};
     double before = 0;
@@ -78,16 +76,11 @@ BlockEdges block_edges(const Eigen::RowVectorXd& filled) {
     return edges;
 }
 
-/// Normal equations of each block of time.
-struct BlockSums {
-    std::vector<Eigen::MatrixXd> gram;
-    std::vector<Eigen::VectorXd> moment;
-    std::vector<double> energy;
-};
-
-BlockSums block_sums(const std::vector<const Eigen::MatrixXd*>& columns, const Eigen::MatrixXd& target,
-                     const Eigen::VectorXd& noise, const BlockEdges& edges) {
-    BlockSums sums;
+/// Returns the sums of each block of time.
+std::vector<WeightedSums> block_sums(const std::vector<const Eigen::MatrixXd*>& columns,
+                                     const Eigen::MatrixXd& target, const Eigen::VectorXd& noise,
+                                     const BlockEdges& edges) {
+    std::vector<WeightedSums> sums;
     const Eigen::VectorXd weight = noise.cwiseSqrt().cwiseInverse();
     for (std::size_t block = 0; block < blocks; ++block) {
         const Eigen::Index first = edges[block];
@@ -98,39 +91,36 @@ BlockSums block_sums(const std::vector<const Eigen::MatrixXd*>& columns, const E
             matrix.col(static_cast<Eigen::Index>(i)) = part.reshaped();
         }
         const Eigen::MatrixXd wanted = weight.asDiagonal() * target.middleCols(first, count);
-        sums.gram.emplace_back(matrix.transpose() * matrix);
-        sums.moment.emplace_back(matrix.transpose() * wanted.reshaped());
-        sums.energy.push_back(wanted.squaredNorm());
+        sums.push_back({matrix.transpose() * matrix, matrix.transpose() * wanted.reshaped()});
     }
     return sums;
 }
 
-/// Returns, per block, the energy that the fit to all other blocks explains.
-Eigen::VectorXd held_out_gains(const BlockSums& sums) {
-    Eigen::MatrixXd gram = sums.gram.front();
-    Eigen::VectorXd moment = sums.moment.front();
-    for (std::size_t block = 1; block < sums.gram.size(); ++block) {
-        gram += sums.gram[block];
-        moment += sums.moment[block];
+/// Returns, per block, the reduction of its sum of squares by the fit to all other blocks.
+Eigen::VectorXd held_out_reductions(const std::vector<WeightedSums>& sums) {
+    Eigen::MatrixXd gram = sums.front().gram;
+    Eigen::VectorXd moment = sums.front().moment;
+    for (std::size_t block = 1; block < sums.size(); ++block) {
+        gram += sums[block].gram;
+        moment += sums[block].moment;
     }
-    Eigen::VectorXd gains(blocks);
-    for (std::size_t block = 0; block < sums.gram.size(); ++block) {
-        Eigen::MatrixXd others = gram - sums.gram[block];
+    Eigen::VectorXd reductions(blocks);
+    for (std::size_t block = 0; block < sums.size(); ++block) {
+        Eigen::MatrixXd others = gram - sums[block].gram;
         others.diagonal().array() *= 1.001; // functions over a narrow range are almost dependent
         others.diagonal().array() += 1;
-        const Eigen::VectorXd fit = others.ldlt().solve(moment - sums.moment[block]);
-        gains[static_cast<Eigen::Index>(block)] =
-            2 * fit.dot(sums.moment[block]) - fit.dot(sums.gram[block] * fit);
+        reductions[static_cast<Eigen::Index>(block)] =
+            2 * held_out_reduction(others, moment - sums[block].moment, sums[block]);
     }
-    return gains;
+    return reductions;
 }
 
-/// Returns whether the mean gain is significantly above zero.
-bool certain(const Eigen::VectorXd& gains) {
+/// Returns whether the mean reduction is significantly above zero.
+bool certain(const Eigen::VectorXd& reductions) {
     constexpr double quantile = 4; // of Student's t-distribution with 7 degrees of freedom: 0.3 % one-sided
-    const double mean = gains.mean();
+    const double mean = reductions.mean();
     const double scatter =
-        (gains.array() - mean).matrix().norm() / std::sqrt(static_cast<double>(blocks - 1));
+        (reductions.array() - mean).matrix().norm() / std::sqrt(static_cast<double>(blocks - 1));
     return mean > quantile * scatter / std::sqrt(static_cast<double>(blocks));
 }
 
@@ -160,7 +150,7 @@ std::vector<Unexplained> unnamed_dependences(const DiagnosisSignals& signals, co
             continue;
         }
         const Eigen::Index output = candidate.columns.front().parts.front().output;
-        const Eigen::MatrixXd contribution = fitted_effects.effects(
+        const Eigen::MatrixXd contribution = fitted_effects.contribution_of(
             signals, [&](const Candidate& other) { return other.key() == candidate.key(); });
         add_rest(result, {{output, share_of_deviation(contribution.col(output), measured.col(output)),
                            candidate.inputs, no_name}});
@@ -182,10 +172,11 @@ void add_rest(std::vector<Unexplained>& unexplained, const std::vector<Unexplain
 
 namespace {
 
-/// Inputs on which an output's residual depends, and the gain of their model in each held-out block.
+/// Inputs on which an output's residual depends, and the error reduction by their model in each held-out
+/// block.
 struct FoundInputs {
     Unexplained entry;
-    Eigen::VectorXd gains = Eigen::VectorXd::Zero(blocks);
+    Eigen::VectorXd reductions = Eigen::VectorXd::Zero(blocks);
 };
 
 /// Forward selection of inputs, while their model improves the prediction of held-out blocks.
@@ -194,15 +185,15 @@ FoundInputs inputs_of_rest(const std::vector<InputFunctions>& candidates, const 
     FoundInputs found{.entry = {output, 0, {}, {}}};
     std::vector<const Eigen::MatrixXd*> chosen;
     for (std::size_t step = 0; step < most_inputs; ++step) {
-        Eigen::VectorXd best = found.gains;
+        Eigen::VectorXd best = found.reductions;
         const InputFunctions* added = nullptr;
         for (const InputFunctions& candidate : candidates) {
             std::vector<const Eigen::MatrixXd*> columns = chosen;
             for (const Eigen::MatrixXd& column : candidate.rows) {
                 columns.push_back(&column);
             }
-            const Eigen::VectorXd with = held_out_gains(block_sums(columns, target, noise, edges));
-            if (with.sum() > best.sum() && certain(with - found.gains)) {
+            const Eigen::VectorXd with = held_out_reductions(block_sums(columns, target, noise, edges));
+            if (with.sum() > best.sum() && certain(with - found.reductions)) {
                 best = with;
                 added = &candidate;
             }
@@ -210,7 +201,7 @@ FoundInputs inputs_of_rest(const std::vector<InputFunctions>& candidates, const 
         if (added == nullptr) {
             break;
         }
-        found.gains = best;
+        found.reductions = best;
         list_inputs(found.entry, added->inputs);
         for (const Eigen::MatrixXd& column : added->rows) {
             chosen.push_back(&column);
@@ -231,13 +222,14 @@ std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
         const std::vector<InputFunctions> candidates = all_functions(signals, rows, output);
         const Eigen::MatrixXd target = rows.analyse(rest.col(output), output);
-        auto [entry, gains] =
+        auto [entry, reductions] =
             inputs_of_rest(candidates, target, noise.col(output), block_edges(rows.filled(output)), output);
         if (entry.depends_on.empty()) {
             continue;
         }
         const double share =
-            gains.sum() / (noise.col(output).cwiseSqrt().cwiseInverse().asDiagonal() * target).squaredNorm();
+            reductions.sum() /
+            (noise.col(output).cwiseSqrt().cwiseInverse().asDiagonal() * target).squaredNorm();
         entry.nrmse =
             std::sqrt(std::max(0.0, share)) * share_of_deviation(rest.col(output), measured.col(output));
         entry.note = no_name;

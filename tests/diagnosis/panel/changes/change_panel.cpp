@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel/changes/change_panel.hpp"
 
+#include "dfdyn/hal/motion/encoder_reading.hpp"
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/replay/replay.hpp"
@@ -20,8 +21,6 @@ constexpr double latest_s = 10; ///< an alarm belongs to a change for this time 
 
 constexpr std::array causes{Cause::payload, Cause::friction, Cause::bias, Cause::contact, Cause::frozen};
 
-double seconds(std::int64_t time_ns) { return 1e-9 * static_cast<double>(time_ns); }
-
 ChangeScore score_of(ChangeCase&& change, std::vector<NamedChange> found) {
     ChangeScore score;
     score.change = std::move(change);
@@ -29,7 +28,7 @@ ChangeScore score_of(ChangeCase&& change, std::vector<NamedChange> found) {
     const double until = score.change.cause ? score.change.time_s : score.change.end_s;
     score.watched_s = until - settled_s;
     for (const NamedChange& one : score.found) {
-        const double alarm_s = seconds(one.alarm_ns);
+        const double alarm_s = hal::seconds_of(one.alarm_ns);
         if (alarm_s < until) {
             ++score.false_alarms;
         } else if (score.hit == nullptr && alarm_s < until + latest_s) {
@@ -159,8 +158,8 @@ std::string describe(const ChangeScore& score) {
     }
     for (const NamedChange& found : score.found) {
         text += &found == score.hit ? "; FOUND " : "; ";
-        text += formatted("%.1f s ", seconds(found.alarm_ns)) + name(found.cause) + " " + found.where +
-                formatted(" %.2f", found.confidence) + " by " + found.shown_by + " else " +
+        text += formatted("%.1f s ", hal::seconds_of(found.alarm_ns)) + name(found.cause) + " " +
+                found.where + formatted(" %.2f", found.confidence) + " by " + found.shown_by + " else " +
                 name(found.runner_up);
         for (const ChangeParameter& parameter : found.parameters) {
             text += " " + parameter.name + formatted(" %.3g", parameter.value);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the columns of effects with an independent computation of each effect on the rigid body.
-#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/candidates/dependence_candidates.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
@@ -36,7 +36,7 @@ TEST_CASE("the nominal outputs are the firmware's regressor times the nominal pa
 
 TEST_CASE("a tilted base rotates gravity about the x and y axes of the root link") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const std::vector<Candidate> candidates = lasting_candidates(signals);
+    const std::vector<Candidate> candidates = static_candidates(signals);
     const Candidate& tilt = find(candidates, "gravity_tilt", "base");
     constexpr double angle = 1e-4;
     for (int axis = 0; axis < 2; ++axis) {
@@ -52,7 +52,7 @@ TEST_CASE("a tilted base rotates gravity about the x and y axes of the root link
 
 TEST_CASE("a payload is a point mass at the tip and a link's mass error one at its centre of mass") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const std::vector<Candidate> candidates = lasting_candidates(signals);
+    const std::vector<Candidate> candidates = static_candidates(signals);
     const auto with_mass = [&](std::size_t joint, const Eigen::Vector3d& centre) {
         Robot heavier = signals.robot;
         heavier.joints[joint].inertia += body_parameters(1, centre, Eigen::Matrix3d::Zero());
@@ -67,7 +67,7 @@ TEST_CASE("a payload is a point mass at the tip and a link's mass error one at i
 
 TEST_CASE("a link's moments of inertia act as those of another link, and as a rotor at the first joint") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const std::vector<Candidate> candidates = lasting_candidates(signals);
+    const std::vector<Candidate> candidates = static_candidates(signals);
     const Candidate& third = find(candidates, "link_rotational_inertia_error", "link3");
     const std::array<std::pair<Index, Index>, 6> elements{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
     for (std::size_t element = 0; element < elements.size(); ++element) {
@@ -92,7 +92,7 @@ TEST_CASE("a link's moments of inertia act as those of another link, and as a ro
 
 TEST_CASE("the columns of encoder errors are the change of the rigid-body torques at the true positions") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const std::vector<Candidate> candidates = lasting_candidates(signals);
+    const std::vector<Candidate> candidates = static_candidates(signals);
     constexpr double amount = 1e-4;
     // `swing` is the encoder's reading; the true position is the reading minus the encoder's error.
     const auto outputs_at = [&](const VectorXd& error, const VectorXd& error_rate,
@@ -122,7 +122,7 @@ TEST_CASE("Coulomb friction opposes the motion and presliding friction builds up
         velocity[row] = row < 800 ? 0.5 : row < 1200 ? 0.0 : -0.5;
         position[row] = row == 0 ? 0.0 : position[row - 1] + 0.01 * velocity[row];
     }
-    const std::vector<Candidate> candidates = lasting_candidates(signals);
+    const std::vector<Candidate> candidates = static_candidates(signals);
     const Candidate& coulomb = find(candidates, "coulomb_friction", "joint1");
     const MatrixXd by_travel = contribution(signals, coulomb, 1);
     CHECK(by_travel(500, 0) == Approx(1).margin(1e-3));
@@ -212,7 +212,7 @@ TEST_CASE("load-dependent friction is LuGre friction whose Coulomb level is a sh
     constexpr double mu = 0.15;
     const VectorXd load = signals.nominal.col(joint).cwiseAbs();
     const double usual = std::sqrt(load.squaredNorm() / static_cast<double>(load.size()));
-    const std::vector<Candidate> candidates = lasting_candidates(signals);
+    const std::vector<Candidate> candidates = static_candidates(signals);
     const Candidate& candidate = find(candidates, "load_dependent_friction", "joint3");
     double last_bend = 0;
     for (const EffectShape& shape : candidate.shapes) {
@@ -242,7 +242,7 @@ TEST_CASE("load-dependent friction is LuGre friction whose Coulomb level is a sh
 
 TEST_CASE("a Stribeck candidate requires static friction clearly above Coulomb friction") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const Candidate stribeck = find(lasting_candidates(signals), "stribeck_friction", "joint2");
+    const Candidate stribeck = find(static_candidates(signals), "stribeck_friction", "joint2");
     REQUIRE_FALSE(stribeck.shapes.empty());
     for (const EffectShape& shape : stribeck.shapes) {
         CHECK(shape.allowed(VectorXd{{2, 0.3}}));
@@ -250,4 +250,57 @@ TEST_CASE("a Stribeck candidate requires static friction clearly above Coulomb f
         CHECK_FALSE(shape.allowed(VectorXd{{2, -0.3}}));
         CHECK_FALSE(shape.allowed(VectorXd{{-2, 0.3}}));
     }
+}
+
+TEST_CASE("centres of mass on a planar arm have no component along its axes, and no shape is offered twice") {
+    using Columns = std::vector<std::size_t>;
+    const std::vector<Candidate> plane =
+        static_candidates(signals_of(planar_arm(9.81), OutputKind::joint_torque));
+    const Candidate& link = find(plane, "link_inertia_error", "link2");
+    REQUIRE(link.shapes.size() == 3);
+    CHECK(link.shapes[0].columns == Columns{0});
+    CHECK(link.shapes[1].columns == Columns{1, 2});
+    CHECK(link.shapes[2].columns == Columns{0, 1, 2});
+    CHECK(link.shapes[2].bounded_count == 2);
+    const std::vector<EffectParameter> moved = link.parameters(VectorXd{{0.1, -0.2}}, link.shapes[1]);
+    REQUIRE(moved.size() == 3); // of a link of 1 kg
+    CHECK(moved[1].name == "delta_com_x");
+    CHECK(moved[1].value == Approx(0.1));
+    CHECK(moved[2].name == "delta_com_y");
+    CHECK(moved[2].value == Approx(-0.2));
+    CHECK(link.shapes[1].allowed(VectorXd{{0.1, -0.2}}));
+    CHECK_FALSE(link.shapes[1].allowed(VectorXd{{0.2, -0.3}})); // farther than 0.3 m
+
+    const Candidate& at_one_joint = find(plane, "link_inertia_error", "link1");
+    CHECK(at_one_joint.shapes.size() == 1); // the others could be an encoder's offset and a rotor, too
+
+    const Candidate& payload = find(plane, "payload", "tool");
+    REQUIRE(payload.shapes.size() == 2);
+    CHECK(payload.shapes[1].columns == Columns{0, 1, 2});
+    CHECK(payload.parameters(VectorXd{{2, 0.2, 0.4}}, payload.shapes[1]).size() == 3);
+
+    // without gravity every change of the first link is one of its inertia about the axis
+    const std::vector<Candidate> level =
+        static_candidates(signals_of(planar_arm(0), OutputKind::joint_torque));
+    const Candidate& first = find(level, "link_inertia_error", "link1");
+    REQUIRE(first.shapes.size() == 1);
+    CHECK(first.prior_trials == 3); // the prior of a mass error is that of other arms
+}
+
+TEST_CASE("the shapes of a centre of mass in space have all components") {
+    using Columns = std::vector<std::size_t>;
+    const std::vector<Candidate> space = static_candidates(signals_of(ur5(), OutputKind::joint_torque));
+    const Candidate& link = find(space, "link_inertia_error", "link3");
+    REQUIRE(link.shapes.size() == 3);
+    CHECK(link.shapes[1].columns == Columns{1, 2, 3});
+    CHECK(link.shapes[2].columns == Columns{0, 1, 2, 3});
+    CHECK(link.shapes[2].bounded_count == 3);
+    CHECK(link.shapes[2].undetermined == 0);
+    CHECK(link.prior_trials == 1);
+    const Candidate& payload = find(space, "payload", "tool");
+    REQUIRE(payload.shapes.size() == 2);
+    CHECK(payload.shapes[1].columns == Columns{0, 1, 2, 3});
+    CHECK(payload.shapes[1].bounded_count == 3);
+    CHECK(payload.prior_trials == 1);
+    CHECK(find(space, "link_inertia_error", "link1").shapes.size() == 1); // it turns about a vertical axis
 }

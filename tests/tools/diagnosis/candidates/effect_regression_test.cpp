@@ -78,7 +78,7 @@ TEST_CASE("the noise estimate is unbiased in bins where many columns were fitted
     for (int trial = 0; trial < trials; ++trial) {
         EffectRegression regression(rows, white_noise(measured.time_s.size(), 1, engine), rows.frames());
         set_columns(regression, columns);
-        const WeighedSums sums = regression.weighted_sums();
+        const WeightedSums sums = regression.weighted_sums();
         const MatrixXd left = regression.residual(0, solve_symmetric(sums.gram, sums.moment));
         const VectorXd spent = regression.spent(0, fitted, inverse_matrix(sums.gram));
         // Bin 5 is the first bin above those in which persistence is estimated.

@@ -5,6 +5,7 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
+#include "tools/diagnosis/effects/effect_internals.hpp"
 #include "tools/robot/dynamics/arm_dynamics.hpp"
 
 #include <Eigen/Geometry>
@@ -46,8 +47,8 @@ TEST_CASE("a relinearized payload is exact at its centre of mass and at the tip"
     const double mass = draw(engine, 0.5, 3);
     const Eigen::Vector3d centre(draw(engine, 0.05, 0.2), draw(engine, -0.2, 0.2), draw(engine, -0.2, 0.2));
     const VectorXd moments{{mass, mass * centre.x(), mass * centre.y(), mass * centre.z()}};
-    const Candidate payload = find(lasting_candidates(signals), "payload", "tool");
-    const Candidate exact = payload.about(payload.shapes.back(), moments);
+    const Candidate payload = find(static_candidates(signals), "payload", "tool");
+    const Candidate exact = payload.relinearized_at(payload.shapes.back(), moments);
     const auto outputs_with = [&](const Eigen::Vector3d& at) -> MatrixXd {
         Robot loaded = robot;
         loaded.joints.back().inertia +=
@@ -65,23 +66,23 @@ TEST_CASE("a relinearized tilt or encoder error is exact at a large angle") {
     const auto angle = [&engine] { return draw(engine, 0.05, 0.3) * (draw(engine, -1, 1) < 0 ? -1 : 1); };
 
     const VectorXd tilts{{angle(), angle()}};
-    const Candidate tilt = find(lasting_candidates(signals), "gravity_tilt", "base");
+    const Candidate tilt = find(static_candidates(signals), "gravity_tilt", "base");
     Robot tilted = signals.robot;
     tilted.gravity = Eigen::AngleAxisd(-tilts[0], Eigen::Vector3d::UnitX()) *
                      (Eigen::AngleAxisd(-tilts[1], Eigen::Vector3d::UnitY()) * tilted.gravity);
-    check_same(added(signals, tilt.about(tilt.shapes[0], tilts), 0, tilts),
+    check_same(added(signals, tilt.relinearized_at(tilt.shapes[0], tilts), 0, tilts),
                rigid_outputs(tilted, signals.kind, motion) - signals.nominal, 1e-9);
 
     const VectorXd offset = VectorXd::Constant(1, angle());
-    const Candidate encoder = find(lasting_candidates(signals), "encoder_offset", "encoder3");
+    const Candidate encoder = find(static_candidates(signals), "encoder_offset", "encoder3");
     RobotMotion truth = motion;
     truth.position.col(2).array() -= offset[0];
-    check_same(added(signals, encoder.about(encoder.shapes[0], offset), 0, offset),
+    check_same(added(signals, encoder.relinearized_at(encoder.shapes[0], offset), 0, offset),
                rigid_outputs(signals.robot, signals.kind, truth) - signals.nominal, 1e-9);
 
     // measured = true + a sin(true) + b cos(true)
     const VectorXd bent{{angle() / 2, angle() / 2}};
-    const Candidate eccentric = find(lasting_candidates(signals), "encoder_eccentricity", "encoder3");
+    const Candidate eccentric = find(static_candidates(signals), "encoder_eccentricity", "encoder3");
     truth = motion;
     for (Index row = 0; row < truth.rows(); ++row) {
         double& q = truth.position(row, 2);
@@ -94,7 +95,7 @@ TEST_CASE("a relinearized tilt or encoder error is exact at a large angle") {
         v = motion.velocity(row, 2) / slope;
         truth.acceleration(row, 2) = (motion.acceleration(row, 2) - bend * v * v) / slope;
     }
-    check_same(added(signals, eccentric.about(eccentric.shapes[0], bent), 0, bent),
+    check_same(added(signals, eccentric.relinearized_at(eccentric.shapes[0], bent), 0, bent),
                rigid_outputs(signals.robot, signals.kind, truth) - signals.nominal, 5e-3);
 }
 
@@ -130,7 +131,7 @@ TEST_CASE("the gap of a backlash follows from the duration of the fall and not f
     CHECK(shape.allowed(soft));
     CHECK_FALSE(shape.allowed(soft / 2));
     CHECK(backlash.parameters(soft, shape).front().value == shape.value);
-    const Candidate nearer = backlash.about(shape, soft);
+    const Candidate nearer = backlash.relinearized_at(shape, soft);
     CHECK(nearer.shapes.front().value == shape.value);
     for (const EffectShape& other : nearer.shapes) {
         CHECK(std::abs(other.value / shape.value - 1) < 0.15);
@@ -140,7 +141,7 @@ TEST_CASE("the gap of a backlash follows from the duration of the fall and not f
 TEST_CASE("a payload fit beyond the allowed distance returns the best allowed payload") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const EffectShape shape = find(lasting_candidates(signals), "payload", "tool").shapes[1];
+    const EffectShape shape = find(static_candidates(signals), "payload", "tool").shapes[1];
     int bounded = 0;
     for (int trial = 0; trial < 50; ++trial) {
         const MatrixXd columns = MatrixXd::NullaryExpr(40, 4, [&] { return draw(engine, -1, 1); });
@@ -202,7 +203,7 @@ TEST_CASE("refined pulses surround the pulse that was found and keep it as the f
     const std::vector<ContactSite> sites = contact_sites(signals);
     const ContactPulse pulse{4, 6, 0.6};
     const Candidate first = contact_candidate(signals, sites[1], pulse, pulses_about(pulse, 0.15));
-    const Candidate nearer = first.about(first.shapes[5], VectorXd::Ones(1));
+    const Candidate nearer = first.relinearized_at(first.shapes[5], VectorXd::Ones(1));
     CHECK(nearer.key() == first.key());
     CHECK((contribution(signals, nearer, 0) - contribution(signals, first, 5)).norm() < 1e-12);
     const auto start = [](const Candidate& candidate, std::size_t shape) {
@@ -218,11 +219,11 @@ TEST_CASE("a payload picked up later adds nothing before that time and its full 
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<EffectColumn> columns = payload_columns(signals);
     const Candidate taken = taken_payload(signals, columns, {7.005, 9});
-    const Candidate lasting = find(lasting_candidates(signals), "payload", "tool");
+    const Candidate permanent = find(static_candidates(signals), "payload", "tool");
     for (std::size_t column = 0; column < 4; ++column) {
         const MatrixXd late = contribution(signals, taken, column);
         CHECK(late.topRows(701).isZero(0));
-        CHECK((late - contribution(signals, lasting, column)).bottomRows(1299).isZero(0));
+        CHECK((late - contribution(signals, permanent, column)).bottomRows(1299).isZero(0));
     }
     const VectorXd mass = VectorXd::Constant(1, 0.4);
     const auto parameters = taken.parameters(mass, taken.shapes[0]);

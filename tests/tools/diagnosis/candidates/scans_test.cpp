@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans of a residual into which a known effect was planted.
-#include "tools/diagnosis/candidates/scans.hpp"
+#include "tools/diagnosis/candidates/weighted_residual.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
+#include "tools/diagnosis/effects/effect_internals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -115,7 +116,7 @@ TEST_CASE("a late payload must explain more than loads of short duration would")
     // 1.5 times the fourth largest of a hundred sums of four squares of a standard normal variable.
     CHECK(demanded() < 1.5 * 15);
 
-    const Candidate mass = find(lasting_candidates(residual.signals), "payload", "tool");
+    const Candidate mass = find(static_candidates(residual.signals), "payload", "tool");
     const MatrixXd load = 2 * contribution(residual.signals, mass, 0);
     const MatrixXd precision = residual.regression().noise().cwiseInverse();
     std::vector<double> explained;

@@ -91,7 +91,7 @@ TEST_CASE("candidates have the places and parameters that the catalogue lists fo
     const DiagnosisSignals wrench = signals_of(icub_right_arm(), OutputKind::wrench);
     std::set<std::string> seen;
     for (const DiagnosisSignals* const signals : {&torques, &wrench}) {
-        std::vector<Candidate> candidates = lasting_candidates(*signals);
+        std::vector<Candidate> candidates = static_candidates(*signals);
         std::vector<Candidate> fitted = fitted_candidates(*signals, rigid_model(*signals));
         candidates.insert(candidates.end(), fitted.begin(), fitted.end());
         for (const Candidate& candidate : candidates) {

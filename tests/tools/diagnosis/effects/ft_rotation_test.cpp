@@ -61,7 +61,7 @@ TEST_CASE("an F/T sensor that is turned by half a radian has no error of its gai
     }
     const DiagnosisSignals signals = diagnosis_signals(robot, OutputKind::wrench, motion);
     const FittedEffects fitted = find_effects(signals, signals.measured.outputs, {});
-    MatrixXd rest = signals.measured.outputs - signals.nominal - fitted.all(signals);
+    MatrixXd rest = signals.measured.outputs - signals.nominal - fitted.total_contribution(signals);
     const std::vector<Finding> findings =
         findings_of(signals, fitted, {}, rest, output_names(OutputKind::wrench, robot.joints.size()));
     const auto rotation = std::ranges::find(findings, "ft_rotation", &Finding::effect);

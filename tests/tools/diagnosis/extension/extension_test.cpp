@@ -7,14 +7,15 @@
 #include "tests/tools/robot/arms.hpp"
 #include "tools/base/numerics/to_vector.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
-#include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/effects/effect_internals.hpp"
 #include "tools/diagnosis/extension/corrected_robot.hpp"
 #include "tools/model/chain_model.hpp"
 #include "tools/robot/dynamics/arm_dynamics.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -112,7 +113,7 @@ bool carried_exactly(const Candidate& candidate, std::size_t shape) {
 
 /// Candidates that do not need a scan of the residual.
 std::vector<Candidate> all_candidates(const DiagnosisSignals& signals) {
-    std::vector<Candidate> candidates = lasting_candidates(signals);
+    std::vector<Candidate> candidates = static_candidates(signals);
     const std::vector<Candidate> more = fitted_candidates(signals, dfdyn::tests::rigid_model(signals));
     candidates.insert(candidates.end(), more.begin(), more.end());
     return candidates;
@@ -231,13 +232,13 @@ TEST_CASE("the extended model with an error of all masses and a payload is the f
         fitted.nuisance.push_back(on_outputs(signals.of_body(body, nominal.segment<10>(10 * body))));
     }
     fitted.problem.nuisance.resize(6);
-    fitted.candidates = {dfdyn::tests::find(lasting_candidates(signals), "payload", "tool")};
+    fitted.candidates = {dfdyn::tests::find(static_candidates(signals), "payload", "tool")};
     fitted.chosen = {{0, 0}};
     fitted.values.coefficients = VectorXd::Constant(7, 0.1);
     fitted.values.coefficients[6] = 2; // kg
     fitted.values.covariance = 1e-12 * MatrixXd::Identity(7, 7);
     fitted.fit.coefficients = 0.5 * fitted.values.coefficients; // differs at outputs without an exact effect
-    const MatrixXd expected = signals.nominal + fitted.model(signals);
+    const MatrixXd expected = signals.nominal + fitted.reported_contribution(signals);
     const MatrixXd found = outputs_of(extension_of(work), signals.measured.motion);
     CHECK((found - expected).norm() < 1e-6 * expected.norm());
 }
@@ -246,7 +247,7 @@ TEST_CASE("columns of the same effect at the same place are merged into one") {
     std::mt19937_64 engine(1);
     DiagnosisWork work = work_of_swinging_ur5(engine);
     const DiagnosisSignals& signals = *work.signals;
-    for (const Candidate& candidate : lasting_candidates(signals)) {
+    for (const Candidate& candidate : static_candidates(signals)) {
         if (candidate.where == "joint2" &&
             (candidate.effect == "joint_spring" || candidate.effect == "torque_offset")) {
             work.fitted_effects.chosen.push_back({work.fitted_effects.candidates.size(), 0});
@@ -278,7 +279,7 @@ TEST_CASE("the corrected robot has the extended model's torques and lists what i
         {"rotor_inertia@joint1 ", {0, 0.5}},  {"payload@tool ", {0, 1.5}},
         {"torque_offset@joint4 ", {0, 0.7}},  {"link_inertia_error@link2 ", {0, -1}}};
     std::vector<double> coefficients;
-    for (const Candidate& candidate : lasting_candidates(signals)) {
+    for (const Candidate& candidate : static_candidates(signals)) {
         if (const auto found = hidden.find(candidate.key()); found != hidden.end()) {
             work.fitted_effects.chosen.push_back(
                 {work.fitted_effects.candidates.size(), found->second.first});
@@ -291,7 +292,7 @@ TEST_CASE("the corrected robot has the extended model's torques and lists what i
     work.fitted_effects.values.coefficients = Eigen::Map<const VectorXd>(coefficients.data(), count);
     work.fitted_effects.values.covariance = MatrixXd::Identity(count, count);
     const ModelExtension extension = extension_of(work);
-    const RobotExport corrected = corrected_robot(extension);
+    const RobotExport corrected = corrected_robot(extension, {"urdf"});
     CHECK(corrected.left_out == std::vector<std::string>{"torque_offset at joint4"});
     const ArmDynamics dynamics(corrected.robot, JointVector::Zero(6));
     ArmDynamics::Configuration configuration;
@@ -313,4 +314,29 @@ TEST_CASE("the corrected robot has the extended model's torques and lists what i
             CHECK(torque[2] + friction == Approx(extended(row, 2)).margin(1e-3));
         }
     }
+}
+
+TEST_CASE(
+    "the corrected robot has the friction of plain least squares, and its gain and gravity are listed") {
+    std::mt19937_64 engine(1);
+    DiagnosisWork work = work_of_swinging_ur5(engine);
+    const DiagnosisSignals& signals = *work.signals;
+    work.measured = signals.nominal;
+    work.measured.col(1) =
+        0.8 * signals.nominal.col(1) + 3 * signals.measured.motion.velocity.col(1) + 2 * signals.direction(1);
+    work.diagnosis.by_least_squares = {false, true, false, false, false, false};
+    ModelExtension extension = extension_of(work);
+    CHECK(extension.output_gain[1] == Approx(0.8).margin(1e-3));
+    extension.robot.gravity.setZero();
+    const RobotExport corrected = corrected_robot(extension, {"mjcf", "urdf"});
+    CHECK(corrected.joints[1].damping == Approx(3).margin(0.01));
+    CHECK(corrected.joints[1].friction == Approx(2).margin(0.01));
+    for (const char* part :
+         {"factor 0.8 of the rigid body at joint2", "gravity of 0 m/s² in a URDF: simulators use 9.81"}) {
+        CAPTURE(part);
+        CHECK(std::ranges::find(corrected.left_out, part) != corrected.left_out.end());
+    }
+    const RobotExport without_urdf = corrected_robot(extension, {"mjcf"});
+    CHECK(std::ranges::none_of(without_urdf.left_out,
+                               [](const std::string& part) { return part.starts_with("gravity"); }));
 }

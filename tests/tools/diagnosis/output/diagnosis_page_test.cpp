@@ -22,7 +22,8 @@ ErrorMeasure error_of(double rms) {
     return {VectorXd::Constant(6, rms), VectorXd::Constant(6, 0.1), VectorXd::Constant(6, 0.1)};
 }
 
-/// The work of a diagnosis that answered, without findings, whose error changes from 1 N·m to `extended_rms`.
+/// The work of a diagnosis with fitted effects, without findings, whose error changes from 1 N·m to
+/// `extended_rms`.
 DiagnosisWork work_with_error(double extended_rms) {
     DiagnosisWork work;
     auto signals = std::make_shared<DiagnosisSignals>(signals_of(ur5(), OutputKind::joint_torque));
@@ -38,7 +39,7 @@ DiagnosisWork work_with_error(double extended_rms) {
     set_output_units(diagnosis, ur5(), OutputKind::joint_torque);
     diagnosis.nominal = error_of(1);
     diagnosis.extended = diagnosis.causes = diagnosis.least_squares = error_of(extended_rms);
-    diagnosis.standing_share = VectorXd::Zero(6);
+    diagnosis.standstill_share = VectorXd::Zero(6);
     diagnosis.heldout_to_s = 10;
     return work;
 }

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 TEST_CASE("the spectrum of an error has its power per bin and ends where the output no longer answers") {
     DFDYN_SEEDED_ENGINE(engine);
     MeasuredMotion measured = dfdyn::tests::swing(1);
-    measured.answered_hz = VectorXd::Constant(1, 5);
+    measured.response_bandwidth_hz = VectorXd::Constant(1, 5);
     std::normal_distribution<double> normal;
     VectorXd error(measured.time_s.size()); // slow, as the error of friction
     double level = 0;

@@ -10,6 +10,7 @@
 #include "tools/base/recording/columns_matrix.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
+#include "tools/diagnosis/recordings/diagnose_recordings.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ TEST_CASE("a wrong link and a load in one of three recordings are distinguished,
     const Robot robot = ur5();
     const std::vector<Recording> recordings = motions(robot, true, true);
     const SeveralRecordings several = answer_of(robot, recordings, true);
-    REQUIRE(several.answered());
+    REQUIRE(several.fitted());
     REQUIRE(several.answer.loads.size() == 1);
     const RecordingLoad& found = several.answer.loads.front();
     CHECK(found.recording == loaded);
@@ -90,6 +91,21 @@ TEST_CASE("a wrong link and a load in one of three recordings are distinguished,
         }
     }
     CHECK(held >= 16); // of 18
+}
+
+TEST_CASE("recordings with times in ms are refused before loads are sought in them") {
+    const Robot robot = ur5();
+    std::vector<Recording> recordings = motions(robot, false, false);
+    for (Recording& one : recordings) {
+        for (std::size_t row = 0; row < one.row_count(); ++row) {
+            one.time_s[row] *= 1000;
+            one.time_ns[row] *= 1000;
+        }
+    }
+    const DiagnosisWork work = diagnose_recordings(robot, recordings, {}, true);
+    CHECK(refused(work.diagnosis));
+    REQUIRE_FALSE(work.diagnosis.suspicions.empty());
+    CHECK(work.diagnosis.suspicions.front().code == "time_unit");
 }
 
 TEST_CASE("no load is named without one, and the subtracted torque is the load's") {
@@ -141,10 +157,10 @@ TEST_CASE("a load in all recordings is one common load") {
 TEST_CASE("a single recording and wrenches have no common fit") {
     const Robot robot = ur5();
     const Recording one = simulated_recording(robot, scenario_of(robot, 0), "one.csv");
-    CHECK_FALSE(answer_of(robot, {one}, false).answered());
+    CHECK_FALSE(answer_of(robot, {one}, false).fitted());
     DiagnosisOptions wrench;
     wrench.outputs = OutputKind::wrench;
-    CHECK_FALSE(fit_recordings(robot, {one, one}, wrench, false).answered());
+    CHECK_FALSE(fit_recordings(robot, {one, one}, wrench, false).fitted());
 }
 
 TEST_CASE("a recording of two rows, or with rows 1 s apart, has no part in the common fit") {

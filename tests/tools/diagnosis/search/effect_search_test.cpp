@@ -35,7 +35,7 @@ bool positive(const VectorXd& coefficients) { return (coefficients.array() > 0).
 /// A search problem with one candidate per column.
 SearchProblem problem_of(const MatrixXd& columns, const VectorXd& target) {
     SearchProblem problem;
-    problem.sums = {columns.transpose() * columns, columns.transpose() * target, target.squaredNorm()};
+    problem.sums = {columns.transpose() * columns, columns.transpose() * target};
     for (Index column = 0; column < columns.cols(); ++column) {
         SearchCandidate candidate;
         candidate.shapes.push_back({{column}, anything});
@@ -197,7 +197,7 @@ TEST_CASE(
     problem.candidates.erase(problem.candidates.begin());
     const std::vector<ChosenShape> chosen = search_effects(problem, {});
     REQUIRE(chosen.size() == 1);
-    std::vector<WeighedSums> blocks;
+    std::vector<WeightedSums> blocks;
     for (const Index first : {Index{0}, rows / 2}) {
         blocks.push_back(
             problem_of(columns.middleRows(first, rows / 2), target.segment(first, rows / 2)).sums);
@@ -213,7 +213,7 @@ TEST_CASE("the held-out score predicts each block by least squares of all other 
     constexpr Index size = rows / blocks;
     target.segment(size, size) += 0.4 * columns.col(1).segment(size, size); // in one block only
     SearchProblem problem = problem_of(columns, target);
-    std::vector<WeighedSums> sums;
+    std::vector<WeightedSums> sums;
     for (Index block = 0; block < blocks; ++block) {
         sums.push_back(
             problem_of(columns.middleRows(block * size, size), target.segment(block * size, size)).sums);

@@ -45,7 +45,7 @@ VectorXd bristle_friction(const MeasuredMotion& measured, Index joint, double be
 /// Returns the likely findings for torques (T x 6), as effect@place.
 std::vector<std::string> likely(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
     const FittedEffects effects = find_effects(signals, measured, {});
-    const Eigen::MatrixXd rest = measured - signals.nominal - effects.all(signals);
+    const Eigen::MatrixXd rest = measured - signals.nominal - effects.total_contribution(signals);
     std::vector<std::string> names;
     for (const Finding& finding : findings_of(signals, effects, {}, rest, joint_names("tau", 6))) {
         if (finding.confidence >= 0.5) {
@@ -92,7 +92,7 @@ TEST_CASE("without friction nothing builds up") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const FittedEffects effects = find_effects(signals, noisy(signals.nominal, engine), {});
     CHECK(effects.named_effects().empty());
-    CHECK(effects.model(signals).cwiseAbs().maxCoeff() < noise);
+    CHECK(effects.reported_contribution(signals).cwiseAbs().maxCoeff() < noise);
 }
 
 } // namespace nuisance_parameters_test

@@ -49,7 +49,7 @@ FittedEffects with_friction(const DiagnosisSignals& signals, const std::string& 
 std::vector<StationaryContact> pushes_in(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
                                          const MatrixXd& measured) {
     return stationary_contacts(signals, fitted_effects, measured,
-                               measured - signals.nominal - fitted_effects.all(signals));
+                               measured - signals.nominal - fitted_effects.total_contribution(signals));
 }
 
 /// Torques of a joint that rests undisturbed: it creeps, and its friction yields in both directions.

@@ -31,7 +31,7 @@ MeasuredMotion shaking(Index joints, double amplitude) {
 
 /// Response bandwidths (Hz) when the encoders show `shown` and the torques, with noise, are those of
 /// `motion`.
-VectorXd answered(const MeasuredMotion& shown, const RobotMotion& motion, std::mt19937_64& engine) {
+VectorXd bandwidth_of(const MeasuredMotion& shown, const RobotMotion& motion, std::mt19937_64& engine) {
     const Robot robot = ur5();
     MeasuredMotion measured = shown;
     measured.outputs = 0.4 * rigid_outputs(robot, OutputKind::joint_torque, motion);
@@ -39,7 +39,7 @@ VectorXd answered(const MeasuredMotion& shown, const RobotMotion& motion, std::m
     for (double& value : measured.outputs.reshaped()) {
         value += 0.05 * normal(engine);
     }
-    return diagnosis_signals(robot, OutputKind::joint_torque, measured).measured.answered_hz;
+    return diagnosis_signals(robot, OutputKind::joint_torque, measured).measured.response_bandwidth_hz;
 }
 
 } // namespace
@@ -47,9 +47,9 @@ VectorXd answered(const MeasuredMotion& shown, const RobotMotion& motion, std::m
 TEST_CASE("the response bandwidth is unlimited if scaled outputs contain the whole motion") {
     DFDYN_SEEDED_ENGINE(engine);
     const MeasuredMotion quiet = swing(6);
-    CHECK(answered(quiet, quiet.motion, engine).minCoeff() == any_hz);
+    CHECK(bandwidth_of(quiet, quiet.motion, engine).minCoeff() == any_hz);
     const MeasuredMotion shaken = shaking(6, 0.003);
-    CHECK(answered(shaken, shaken.motion, engine).minCoeff() == any_hz);
+    CHECK(bandwidth_of(shaken, shaken.motion, engine).minCoeff() == any_hz);
 }
 
 TEST_CASE("a delay of 30 ms does not reduce the response bandwidth") {
@@ -59,13 +59,13 @@ TEST_CASE("a delay of 30 ms does not reduce the response bandwidth") {
     for (auto part : {&RobotMotion::position, &RobotMotion::velocity, &RobotMotion::acceleration}) {
         (earlier.*part).bottomRows(1997) = (shaken.motion.*part).topRows(1997);
     }
-    CHECK(answered(shaken, earlier, engine).minCoeff() == any_hz);
+    CHECK(bandwidth_of(shaken, earlier, engine).minCoeff() == any_hz);
 }
 
 TEST_CASE("the response bandwidth ends below a vibration that is in the positions but not in the torques") {
     DFDYN_SEEDED_ENGINE(engine);
     const MeasuredMotion quiet = swing(6);
-    const VectorXd hz = answered(shaking(6, 0.003), quiet.motion, engine);
+    const VectorXd hz = bandwidth_of(shaking(6, 0.003), quiet.motion, engine);
     CHECK(hz[1] < 9);
     CHECK(hz[1] > 0.5);
 }

@@ -58,8 +58,9 @@ TEST_CASE("errors are reported over all rows and over the rows in which a joint 
     CHECK(diagnosis.nominal.moving_nrmse[0] == Approx(root_mean_square(missed.tail(count).head(moving)) /
                                                       deviation_of_series(measured.head(moving))));
     CHECK(diagnosis.extended.moving_nrmse[0] < 1e-9);
-    CHECK(diagnosis.standing_share[0] == Approx(static_cast<double>(standing) / static_cast<double>(count)));
-    CHECK(diagnosis.standing_share[1] == 0);
-    CHECK(diagnosis.standing_share[2] == 1);
+    CHECK(diagnosis.standstill_share[0] ==
+          Approx(static_cast<double>(standing) / static_cast<double>(count)));
+    CHECK(diagnosis.standstill_share[1] == 0);
+    CHECK(diagnosis.standstill_share[2] == 1);
     CHECK(std::isnan(diagnosis.nominal.moving_nrmse[2]));
 }

@@ -7,7 +7,7 @@
 #include "tests/tools/robot/arms.hpp"
 #include "tools/base/numerics/root_mean_square.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
-#include "tools/diagnosis/verdict/finding_gain.hpp"
+#include "tools/diagnosis/verdict/error_reduction.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ using Eigen::VectorXd;
 /// Findings for a recording whose first torque is the rigid body's plus `unexplained`.
 std::vector<Finding> found(const DiagnosisSignals& signals, const FittedEffects& fitted_effects,
                            const VectorXd& unexplained) {
-    MatrixXd rest = -fitted_effects.all(signals);
+    MatrixXd rest = -fitted_effects.total_contribution(signals);
     rest.col(0) += unexplained;
     return findings_of(signals, fitted_effects, {}, rest, std::vector<std::string>(6, "tau"));
 }
@@ -46,14 +46,14 @@ TEST_CASE("the evidence of a cause has the output's unit and states whether the 
     const DiagnosisSignals signals = signals_of(robot, OutputKind::joint_torque);
     const MatrixXd rest = MatrixXd::Ones(signals.rows(), 6);
     const std::vector<std::string> names = output_names(OutputKind::joint_torque, 6);
-    const Gains gains(signals, rest, names);
+    const ErrorReduction reduction(signals, rest, names);
     const auto evidence = [&](Index output, double contribution) {
         MatrixXd share = MatrixXd::Zero(signals.rows(), 6);
         share.col(output).setConstant(contribution);
         Finding finding;
         finding.effect = "torque_offset";
-        const bool falls = gains.tell(finding, share);
-        CHECK(falls == (contribution > 0));
+        reduction.describe(finding, share);
+        CHECK(reduces_error(finding) == (contribution > 0));
         return finding.evidence;
     };
     CHECK_THAT(evidence(0, 1), Catch::Matchers::EndsWith("falls from 2 to 1 N·m"));
@@ -126,6 +126,26 @@ TEST_CASE("payload and last link are one cause unless their columns differ by mo
     CHECK(ties(0.01, "") == 0);
 }
 
+TEST_CASE("on an arm that moves in a plane an encoder's offset and its link's centre of mass are one cause") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const VectorXd turned = random_series(signals, engine);
+    const VectorXd other = random_series(signals, engine);
+    const auto ties = [&](double share, const std::string& link_name, std::size_t undetermined) {
+        const VectorXd unexplained = 10 * turned + random_series(signals, engine);
+        const Candidate offset = of_one_column("encoder_offset", "encoder2", turned);
+        Candidate link = of_one_column("link_inertia_error", link_name, turned + std::sqrt(share) * other);
+        link.shapes.front().undetermined = undetermined;
+        const auto findings = found(signals, fitted_effects_of({offset, link}, 1, unexplained), unexplained);
+        REQUIRE(findings.size() == 1);
+        return findings.front().indistinguishable.size();
+    };
+    CHECK(ties(0.01, "link2", 1) == 1);
+    CHECK(ties(0.04, "link2", 1) == 0);
+    CHECK(ties(0.01, "link1", 1) == 0);
+    CHECK(ties(0.01, "link2", 0) == 0);
+}
+
 TEST_CASE("an unexplained residual above 5 Hz does not change the gain of a finding below 5 Hz") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const VectorXd slow = (0.5 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
@@ -143,7 +163,7 @@ TEST_CASE("an unexplained residual above 5 Hz does not change the gain of a find
 TEST_CASE("the gain of a cause that acts only above 5 Hz is measured there") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const VectorXd fast = (20 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
-    const VectorXd leak = 2 * signals.below(gains_below_hz, fast);
+    const VectorXd leak = 2 * signals.below(reduction_below_hz, fast);
     REQUIRE(leak.norm() > 0);
     REQUIRE(leak.norm() < 0.1 * fast.norm());
     // The residual below 5 Hz happens to cancel the small part that the cause has there.

@@ -67,7 +67,7 @@ TEST_CASE("parameters and errors of a prismatic joint are in newtons and metres"
 TEST_CASE("a prismatic joint has no eccentric encoder") {
     const DiagnosisSignals signals = dfdyn::tests::signals_of(arm_with_slide(), OutputKind::joint_torque);
     const auto eccentric_at = [&](const char* where) {
-        return std::ranges::any_of(lasting_candidates(signals), [where](const Candidate& one) {
+        return std::ranges::any_of(static_candidates(signals), [where](const Candidate& one) {
             return one.effect == "encoder_eccentricity" && one.where == where;
         });
     };

@@ -5,6 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/diagnosis/signals/rigid_model.hpp"
+#include "tools/diagnosis/verdict/plausibility.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -164,4 +165,9 @@ TEST_CASE("a single joint that moves slowly under noise is not refused as anothe
     const Diagnosis diagnosis = diagnosis_of(one.recording());
     INFO((diagnosis.suspicions.empty() ? "" : diagnosis.suspicions.front().text));
     CHECK_FALSE(refused(diagnosis));
+}
+
+TEST_CASE("the last row of a recording counts for a step of its duration") {
+    CHECK(suspicions_of_file(CleanRecording(3).recording()).empty());
+    CHECK(suspicions_of_file(CleanRecording(2.99).recording()).size() == 1);
 }

@@ -39,6 +39,24 @@ TEST_CASE("plain least squares finds gain, inertia, friction and offset of each 
     CHECK(shoulder[3] == Approx(2).margin(5e-3));
 }
 
+TEST_CASE("plain least squares of a slide has the rigid body's factor 1") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const VectorXd acceleration = signals.measured.motion.acceleration.col(0);
+    MatrixXd rigid = signals.nominal;
+    rigid.col(0) = 3 * acceleration; // the force of a mass, as that of a rotor
+    MatrixXd measured = rigid;
+    measured.col(0) += 0.5 * acceleration + 2 * signals.direction(0);
+    rigid.col(5).setZero(); // a joint that carries nothing
+    measured.col(5) = 2 * signals.direction(5);
+    const TextbookFit fit = textbook_fit(signals, measured, rigid, signals.rows());
+    CHECK(fit.coefficients(0, 0) == 1);
+    CHECK(fit.coefficients(1, 0) == Approx(0.5).margin(1e-6));
+    CHECK(fit.coefficients(3, 0) == Approx(2).margin(1e-6));
+    CHECK(fit.coefficients(0, 5) == 1);
+    CHECK(fit.coefficients(3, 5) == Approx(2).margin(1e-6));
+    CHECK((fit.prediction - measured).cwiseAbs().maxCoeff() < 1e-3);
+}
+
 TEST_CASE("plain least squares replaces causes with a larger error, and the diagnosis names the output") {
     DFDYN_SEEDED_ENGINE(engine);
     auto signals = std::make_shared<DiagnosisSignals>(signals_of(ur5(), OutputKind::joint_torque));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/candidates/scans.hpp"
+#include "tools/diagnosis/candidates/weighted_residual.hpp"
 
 #include <algorithm>
 #include <vector>

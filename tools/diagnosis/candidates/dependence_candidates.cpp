@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/candidates/dependence_candidates.hpp"
+
 #include "tools/base/numerics/root_mean_square.hpp"
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
-#include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/signals/smooth_functions.hpp"
 
 #include <utility>
@@ -11,7 +12,7 @@ namespace dfdyn::tools {
 namespace {
 
 /// Prior log-odds of a named cause against an unnamed one that explains as much.
-constexpr double price_of_no_name = 4;
+constexpr double unnamed_penalty = 4;
 
 /// Inputs on which outputs may depend: the motion of one joint and functions of it.
 struct JointInputs {
@@ -32,12 +33,12 @@ class Dependence {
     /// `largest`: limit of its rms.
     Dependence(Eigen::Index output, double largest, std::vector<std::string> inputs)
         : output_(output), largest_(largest) {
-        candidate_.where = numbered("output", static_cast<std::size_t>(output));
+        candidate_.where = place_text(PlaceKind::output, static_cast<std::size_t>(output));
         candidate_.inputs = std::move(inputs);
         for (const std::string& input : candidate_.inputs) {
             candidate_.detail += input;
         }
-        candidate_.evidence_offset = price_of_no_name;
+        candidate_.evidence_offset = unnamed_penalty;
     }
 
     void add_function(const Eigen::VectorXd& series) {
