@@ -18,13 +18,12 @@ demo_packages=(
     "libzstd-dev:no ROS 2 bag (MCAP) with zstd chunks can be read"
     "liblz4-dev:no ROS 2 bag (MCAP) with lz4 chunks can be read"
     "libsqlite3-dev:no ROS 2 bag of SQLite can be read"
-    "zlib1g-dev:no compressed recording (.gz) can be read, and the program cannot be built"
+    "zlib1g-dev:the program dfdyn cannot be built"
 )
 test_packages=(
     "catch2:the unit tests cannot be built"
     "libkdl-parser-dev:the robots that are read cannot be compared with KDL's reading of them"
     "liborocos-kdl-dev:no comparison with other programs' dynamics"
-    "libkdl-parser-dev:no comparison with other programs' dynamics"
     "libdart-dev:no comparison with other programs' dynamics"
     "clang:no build with a second compiler"
     "libclang-rt-dev:no build with the sanitizers"
@@ -53,7 +52,7 @@ virtual_time_packages=(
     "flex:it cannot be built"
     "bison:it cannot be built"
     "bc:it cannot be built"
-    "perl-base:it cannot be switched off"
+    "perl-base:the virtual machine cannot be shut down"
     "iproute2:it has no CAN interface"
 )
 

@@ -19,6 +19,8 @@ dfdyn=$(realpath "$1")
 out=$(mkdir -p "$2" && cd "$2" && pwd)
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 data=$root/tests/data
+# shellcheck source=/dev/null
+source "$root/tools/loop_models.sh"
 kernel=$root/build/virtual_time/linux.uml
 cores=$(taskset --cpu-list --pid $$ | sed -E 's/.*: //') # that we may use
 first_core=${cores%%[,-]*}
@@ -26,17 +28,14 @@ last_core=${cores##*[,-]}
 
 # hyperparameters MODEL FOLDER URDF TIP: FOLDER/MODEL.json, from the commissioning motion.
 hyperparameters() {
-    "$dfdyn" train --robot "$3" --tip "$4" --log "$2/commissioning/nominal.csv" --outputs tau --model "$1" \
-        --effects viscous_friction,coulomb_friction,rotor_inertia,torque_offset --own-motion --features 60 --forgetting 0.999 \
-        --likelihood-rows 500 --starts 4 --refinement 10 -o "$2/$1.json" >"$2/$1.txt"
+    train_model "$dfdyn" "$2/commissioning" "$3" "$4" "$1" "$2/$1.json" >"$2/$1.txt"
 }
 
 # demo SHOW FOLDER URDF TIP SCENARIO BUS: hyperparameters, then SHOW FOLDER ARM_OPTION...
 demo() {
     local folder=$2 urdf=$data/robots/$3 tip=$4 scenario=$data/scenarios/$5
     mkdir -p "$folder"
-    sed '/"payloads"/d; s/"seed": /"seed": 1/' "$scenario" >"$folder/commissioning.json"
-    "$dfdyn" loop --simulate --robot "$urdf" --scenario "$folder/commissioning.json" --duration 30 -o "$folder/commissioning" >/dev/null
+    commission "$dfdyn" "$folder/commissioning" "$urdf" "$scenario"
     hyperparameters SPK "$folder" "$urdf" "$tip"
     "$1" "$folder" --robot "$urdf" --scenario "$scenario" --bus "$data/can/$6"
 }

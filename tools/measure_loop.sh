@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # measure_loop.sh DFDYN OUT [ARM [FAULT...]]: simulates all faults of a control loop on both arms, prints the tables of docs/results/loop.md. The
-# models are those of loop_demo.sh, which have learned nothing yet. The faults are those of tests/data/loop_faults, unchanged for the
+# models are those of loop_demo.sh (loop_models.sh), which have learned nothing yet. The faults are those of tests/data/loop_faults, unchanged for the
 # UR5 and adapted in size for the iCub's arm. Each table compares the nominal rigid body, an observer, recursive least squares of rigid
 # body and friction (model P, a memory of 8 s) without and with observer, the learned model alone, and the complete loop (learned model
 # and observer). Takes about 15 minutes; keeps its runs in OUT. ARM (ur5 or icub): only the table of that arm. FAULT (none, or
@@ -9,23 +9,22 @@
 set -euo pipefail
 dfdyn=${1:?usage: measure_loop.sh DFDYN OUT [ARM [FAULT...]]}
 out=${2:?usage: measure_loop.sh DFDYN OUT [ARM [FAULT...]]}
-data=$(cd "$(dirname "${BASH_SOURCE[0]}")/../tests/data" && pwd)
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+data=$root/tests/data
+# shellcheck source=/dev/null
+source "$root/tools/loop_models.sh"
 mkdir -p "$out"
 faults=("${@:4}")
 if [[ ${#faults[@]} -eq 0 ]]; then
     mapfile -t faults < <(echo none && cd "$data/loop_faults" && basename -s .json -- *.json)
 fi
 
-# models ARM URDF TIP: from half a minute under the nominal rigid body, on another motion and without payload.
+# models ARM URDF TIP: OUT/ARM.SPK.json and OUT/ARM.P.json.
 models() {
     local arm=$1 robot=$data/robots/$2 model
-    sed '/"payloads"/d; s/"seed": /"seed": 1/' "$data/scenarios/${arm}_loop.json" >"$out/commissioning.json"
-    "$dfdyn" loop --simulate --robot "$robot" --scenario "$out/commissioning.json" --observer-bandwidth 0 --duration 30 \
-        -o "$out/$arm.commissioning" >/dev/null
+    commission "$dfdyn" "$out/$arm.commissioning" "$robot" "$data/scenarios/${arm}_loop.json"
     for model in SPK P; do
-        "$dfdyn" train --robot "$robot" --tip "$3" --log "$out/$arm.commissioning/nominal.csv" --outputs tau --model "$model" \
-            --effects viscous_friction,coulomb_friction,rotor_inertia,torque_offset --own-motion --forgetting 0.999 \
-            --features 60 --likelihood-rows 500 --starts 4 --refinement 10 -o "$out/$arm.$model.json" >"$out/$arm.$model.txt" 2>&1
+        train_model "$dfdyn" "$out/$arm.commissioning" "$robot" "$3" "$model" "$out/$arm.$model.json" >"$out/$arm.$model.txt" 2>&1
     done
 }
 

@@ -3,9 +3,9 @@
 
 #include "tools/training/data/input_map.hpp"
 #include "tools/training/data/motion.hpp"
+#include "tools/training/likelihood/random_features.hpp"
 #include "tools/training/physics/physics_columns.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
-#include "tools/training/start/random_features.hpp"
 
 #include <Eigen/QR>
 

@@ -32,8 +32,9 @@ fi
 grep -q 'controller: expected a new or empty folder, found files in it' refused.txt
 
 if [[ $core == host ]]; then
-    "$dfdyn" start --log run.csv "${robot[@]}" --quick --flash 48K --ram 12K -o single >/dev/null
-    test -s single/diagnosis.html
+    "$dfdyn" start --log run.csv "${robot[@]}" --quick --flash 48K --ram 12K -o 'single run' >single.txt
+    test -s 'single run/diagnosis.html'
+    grep -qF "cmake -S 'single run' -B 'single run/build' && cmake --build 'single run/build' && 'single run/build/replay_ticks'" single.txt
     test -s controller/diagnosis.html
     grep -q '"again.csv"' controller/diagnosis.json # both recordings are one question
     if grep -q 'As an online learner sees it' controller/diagnosis.html; then
@@ -41,9 +42,7 @@ if [[ $core == host ]]; then
         exit 1
     fi
     "$dfdyn" footprint --model controller/model.json | grep -q '^smaller models'
-    cmake -S controller -B controller/build >/dev/null
-    cmake --build controller/build >/dev/null
-    controller/build/replay_ticks | tee result.txt
+    (cd controller && bash -ec "$(grep -m 1 'build/replay_ticks' README.txt)") | tee result.txt
     grep -q 'predictions as of dfdyn replay' result.txt
     exit 0
 fi

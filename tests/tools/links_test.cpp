@@ -43,6 +43,30 @@ std::vector<std::string> links_of(const std::filesystem::path& document) {
     return links;
 }
 
+/// A file that a page names, as written there, and a symbol that the page says is in it.
+struct NamedSymbol {
+    std::string file, symbol;
+};
+
+/// Returns the pairs of "`file` (`symbol`, `other` …)" and of "`symbol` (`file`)" in a document.
+std::vector<NamedSymbol> named_symbols(const std::filesystem::path& document) {
+    const std::string text = dfdyn::tools::read_file(document);
+    const std::regex file_first(R"(`([\w/.-]+\.[ch]pp)` \((`[^)]*)\))");
+    const std::regex symbol_first(R"(`(\w+)` \(`([\w/.-]+\.[ch]pp)`\))");
+    const std::regex symbol(R"(`(\w+)`)");
+    std::vector<NamedSymbol> found;
+    for (std::sregex_iterator at(text.begin(), text.end(), file_first), end; at != end; ++at) {
+        const std::string symbols = (*at)[2].str();
+        for (std::sregex_iterator one(symbols.begin(), symbols.end(), symbol); one != end; ++one) {
+            found.push_back({(*at)[1].str(), (*one)[1].str()});
+        }
+    }
+    for (std::sregex_iterator at(text.begin(), text.end(), symbol_first), end; at != end; ++at) {
+        found.push_back({(*at)[2].str(), (*at)[1].str()});
+    }
+    return found;
+}
+
 /// The paths of all C++ files, from the project's folder, each with a leading slash.
 std::vector<std::string> source_paths() {
     std::vector<std::string> paths;
@@ -90,4 +114,34 @@ TEST_CASE("every source file that the documentation names exists") {
         }
     }
     CHECK(named > 100);
+}
+
+TEST_CASE("every symbol that the architecture page names with its file is in that file") {
+    const std::vector<std::string> paths = source_paths();
+    const std::vector<NamedSymbol> named = named_symbols(project / "docs/architecture.md");
+    for (const NamedSymbol& one : named) {
+        CAPTURE(one.file, one.symbol);
+        const std::regex word("\\b" + one.symbol + "\\b");
+        const auto has_symbol = [&](const std::string& path) {
+            return path.ends_with("/" + one.file) &&
+                   std::regex_search(dfdyn::tools::read_file(project / path.substr(1)), word);
+        };
+        CHECK(std::ranges::any_of(paths, has_symbol));
+    }
+    CHECK(named.size() > 20);
+}
+
+TEST_CASE("the index of the documentation links to every page") {
+    const std::filesystem::path index = project / "docs/index.md";
+    std::set<std::filesystem::path> linked{std::filesystem::weakly_canonical(index)};
+    for (const std::string& link : links_of(index)) {
+        linked.insert(std::filesystem::weakly_canonical(index.parent_path() / link));
+    }
+    for (const std::filesystem::path& document : documents()) {
+        if (document.parent_path() == project) {
+            continue; // the README and its neighbours
+        }
+        CAPTURE(document);
+        CHECK(linked.contains(std::filesystem::weakly_canonical(document)));
+    }
 }

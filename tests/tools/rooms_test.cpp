@@ -10,6 +10,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -43,19 +44,23 @@ std::set<std::string> folders_of(const std::filesystem::path& parent) {
     return names;
 }
 
-/// The rooms that the sources of `folder` include.
-std::set<std::string> included_rooms(const std::filesystem::path& folder) {
-    const std::regex include(R"(#include "tools/(\w+)/)");
-    std::set<std::string> rooms;
+/// The first group of every match of `include` in the sources of `folder`.
+std::set<std::string> included_names(const std::filesystem::path& folder, const std::regex& include) {
+    std::set<std::string> names;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp") {
             const std::string text = dfdyn::tools::read_file(entry.path());
             for (std::sregex_iterator at(text.begin(), text.end(), include), end; at != end; ++at) {
-                rooms.insert((*at)[1]);
+                names.insert((*at)[1]);
             }
         }
     }
-    return rooms;
+    return names;
+}
+
+/// The rooms that the sources of `folder` include.
+std::set<std::string> included_rooms(const std::filesystem::path& folder) {
+    return included_names(folder, std::regex(R"(#include "tools/(\w+)/)"));
 }
 
 } // namespace
@@ -72,6 +77,21 @@ TEST_CASE("a room of the program includes only rooms of lower levels, as documen
         }
     }
     CHECK(levels.size() == folders_of(project / "tools").size());
+}
+
+TEST_CASE("a step of training includes only earlier steps and the options") {
+    const std::vector<std::string> steps{"data", "physics", "likelihood", "search", "start"};
+    CHECK(folders_of(project / "tools/training") == std::set<std::string>(steps.begin(), steps.end()));
+    const std::regex include(R"(#include "tools/training/(\w+)[/.])");
+    std::set<std::string> allowed{"training_options", "training_progress"};
+    for (const std::string& step : steps) {
+        CAPTURE(step);
+        allowed.insert(step);
+        for (const std::string& included : included_names(project / "tools/training" / step, include)) {
+            CAPTURE(included);
+            CHECK(allowed.contains(included));
+        }
+    }
 }
 
 TEST_CASE("the libraries include nothing of the program, and the firmware nothing of the bus layer") {

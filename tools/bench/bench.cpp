@@ -33,9 +33,9 @@ void append_size(std::vector<BenchTarget>& targets, const TickBench& bench, int 
 void append_floor(std::vector<BenchTarget>& targets, const TickBench& bench) {
     constexpr int columns = 500;
     const TickResult* ours = find_ours(bench, "float", columns);
-    const FloorResult* floor = find_floor(bench, "float", columns);
+    const LowerBoundResult* floor = find_lower_bound(bench, "float", columns);
     if (ours != nullptr && floor != nullptr) {
-        targets.push_back({at_columns("times the floor of this machine", columns),
+        targets.push_back({at_columns("ratio to the machine's lower bound", columns),
                            ours->times.median / floor->floor.total(), 1.8, true});
     }
 }
@@ -68,7 +68,7 @@ BenchResults run_bench(const BenchOptions& options, const std::function<void(dou
 double growth_exponent(const TickBench& bench) {
     std::vector<double> sizes;
     std::vector<double> times;
-    for (const FloorResult& floor : bench.floors) {
+    for (const LowerBoundResult& floor : bench.floors) {
         const TickResult* ours = find_ours(bench, "float", floor.columns);
         if (floor.scalar == "float" && floor.columns >= 200 && ours != nullptr && ours->times.median > 0) {
             sizes.push_back(floor.columns);
@@ -80,7 +80,7 @@ double growth_exponent(const TickBench& bench) {
 
 std::vector<BenchTarget> bench_targets(const BenchResults& results) {
     std::vector<BenchTarget> targets;
-    for (const FloorResult& floor : results.ticks.floors) {
+    for (const LowerBoundResult& floor : results.ticks.floors) {
         if (floor.scalar == "float") {
             append_size(targets, results.ticks, floor.columns);
         }
@@ -91,7 +91,7 @@ std::vector<BenchTarget> bench_targets(const BenchResults& results) {
     }
     const ModelBench& models = results.models;
     targets.push_back({"random features' share of the tick, %", 100 * models.feature_share(), 15, true});
-    targets.push_back({"SPK's tick in ticks of NP", models.kernel_over_nonparametric(), 8, true});
+    targets.push_back({"SPK's tick relative to NP's", models.kernel_over_nonparametric(), 8, true});
     targets.push_back({"times faster than SPK's dense form", models.dense_over_kernel(), 20, false});
     const EnduranceBench& endurance = results.endurance;
     targets.push_back({"change after ten times as many ticks, moving, %",

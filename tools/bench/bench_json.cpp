@@ -37,7 +37,7 @@ json ticks_json(const TickBench& bench) {
 
 json floors_json(const TickBench& bench) {
     json all = json::array();
-    for (const FloorResult& one : bench.floors) {
+    for (const LowerBoundResult& one : bench.floors) {
         all.push_back({{"scalar", one.scalar},
                        {"columns", one.columns},
                        {"arithmetic_us", one.floor.arithmetic},
@@ -74,7 +74,7 @@ json hour_json(const HourBench& hour) {
             {"learned", hour.learned},   {"times_real_time", hour.times_real_time()}};
 }
 
-json loop_times_json(const LoopTimes& times) {
+json loop_times_json(const TickTimes& times) {
     return {{"median_us", times.median},
             {"p99_us", times.p99},
             {"p999_us", times.p999},

@@ -48,7 +48,7 @@ ReportTable target_table(const std::vector<BenchTarget>& targets) {
 ReportTable overview(const BenchResults& results, const std::string& scalar) {
     ReportTable table{"One tick in " + scalar + ", median in µs", {"learner"}, {}, ""};
     std::vector<int> sizes;
-    for (const FloorResult& floor : results.ticks.floors) {
+    for (const LowerBoundResult& floor : results.ticks.floors) {
         if (floor.scalar == scalar) {
             sizes.push_back(floor.columns);
             table.columns.push_back("2d = " + std::to_string(floor.columns));
@@ -76,10 +76,13 @@ ReportTable overview(const BenchResults& results, const std::string& scalar) {
             return found == results.ticks.ticks.end() ? 0 : found->times.median;
         });
     }
-    const auto floor_of = [&](int columns) { return find_floor(results.ticks, scalar, columns)->floor; };
-    add_row("floor: 1.5 p² multiply-adds", [&](int columns) { return floor_of(columns).arithmetic; });
-    add_row("floor: the triangle read and written", [&](int columns) { return floor_of(columns).memory; });
-    add_row("dfdyn over the larger floor", [&](int columns) {
+    const auto floor_of = [&](int columns) {
+        return find_lower_bound(results.ticks, scalar, columns)->floor;
+    };
+    add_row("lower bound: 1.5 p² multiply-adds", [&](int columns) { return floor_of(columns).arithmetic; });
+    add_row("lower bound: the triangle read and written",
+            [&](int columns) { return floor_of(columns).memory; });
+    add_row("dfdyn over the larger lower bound", [&](int columns) {
         const TickResult* ours = find_ours(results.ticks, scalar, columns);
         return ours == nullptr ? 0 : ours->times.median / floor_of(columns).total();
     });
@@ -127,7 +130,7 @@ ReportTable model_table(const ModelBench& models, const EnduranceBench& enduranc
 std::string growth_words(const TickBench& bench) {
     std::string words;
     const TickResult* before = nullptr;
-    for (const FloorResult& floor : bench.floors) {
+    for (const LowerBoundResult& floor : bench.floors) {
         const TickResult* ours = floor.scalar == "float" ? find_ours(bench, "float", floor.columns) : nullptr;
         if (ours != nullptr && before != nullptr) {
             const double sizes[] = {static_cast<double>(before->columns), static_cast<double>(ours->columns)};
@@ -181,7 +184,7 @@ std::string loop_words(const LoopBench& loop) {
 
 ReportTable loop_table(const LoopBench& loop) {
     ReportTable table{"The loop, µs", {"what", "median", "p99", "p99.9", "p99.99", "max"}, {}, ""};
-    const auto add = [&](const std::string& name, const LoopTimes& times) {
+    const auto add = [&](const std::string& name, const TickTimes& times) {
         table.rows.push_back({name, times.median, times.p99, times.p999, times.p9999, times.most});
     };
     add("from when a tick is due until it begins (jitter)", loop.late);
@@ -220,9 +223,9 @@ PageChart time_chart(const TickBench& bench) {
             add(one.learner, one.columns, one.times.median);
         }
     }
-    for (const FloorResult& one : bench.floors) {
+    for (const LowerBoundResult& one : bench.floors) {
         if (one.scalar == "float") {
-            add("floor of this machine", one.columns, one.floor.total());
+            add("the machine's lower bound", one.columns, one.floor.total());
         }
     }
     const std::string title = "Time of one tick in float, six outputs";

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/atomic_file.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
@@ -31,6 +32,7 @@ EvaluationResults run_with_progress(const Plan& plan, const PlanData& data, cons
 
 int run(const EvaluateOptions& options) {
     const JsonOutput output(options.json);
+    check_folder(options.run.folder);
     const Plan plan = options.quick ? quick_plan(read_plan(options.plan)) : read_plan(options.plan);
     const PlanData data = load_plan_data(plan);
     EvaluationResults results = run_with_progress(plan, data, options.run);

@@ -28,7 +28,7 @@
 #include "tools/start/project.hpp"
 #include "tools/start/recording_overview.hpp"
 #include "tools/training/data/recorded_data.hpp"
-#include "tools/training/search/training_problem.hpp"
+#include "tools/training/search/training_setup.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -127,18 +127,25 @@ void diagnose_robot(const Arm& arm, std::vector<Recording> training, const Start
     DiagnosisWork work = diagnose_recordings(*arm.robot, training, how, false);
     work.diagnosis.scope = "the first " + std::to_string(total_rows(training)) + " of " +
                            std::to_string(total_rows(arm.recordings)) + " rows";
-    const ModelExtension extension = answered(work) ? extension_of(work) : ModelExtension{};
+    const ModelExtension extension = effects_fitted(work) ? extension_of(work) : ModelExtension{};
     files["diagnosis.json"] = json_text(diagnosis_json(work.diagnosis)) + '\n';
     const std::string curves = "diagnosis_curves.csv";
     files["diagnosis.html"] = diagnosis_page({*arm.robot, training, work, extension, OnlineView{}, curves});
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
-    if (answered(work)) {
+    if (effects_fitted(work)) {
         std::ostringstream table;
         write_comparison_csv(table, work);
         files[curves] = std::move(table).str(); // may be large
         const Activity activity("building the extended model");
         candidates.push_back({"the robot with the causes found", extended_model(extension, training), {}, 0});
     }
+}
+
+/// Throws InputError if models cannot be compared. The choice of sizes splits the training rows again.
+void require_varying(const SplitRecordings& split) {
+    require_varying_outputs(split.judging, "the last 30 % of the rows");
+    require_varying_outputs(split_recordings(split.training, training_share).judging,
+                            "the rows from 49 % to 70 %");
 }
 
 /// Trains the black-box model that fits the budget.
@@ -233,13 +240,17 @@ void describe_training(TrainedModel& model, const Arm& arm, const StartOptions& 
     model.training.rows = "first 70 %";
 }
 
-std::string next_steps(const StartOptions& options) {
-    const std::string folder = options.folder.string();
-    return "  cmake -S " + folder + " -B " + folder + "/build && cmake --build " + folder + "/build && " +
-           folder + "/build/replay_ticks\n  cmake -S " + folder + " -B " + folder +
-           "/build-arm -DCMAKE_TOOLCHAIN_FILE=cmake/cortex-m.cmake -DDFDYN_CORE=" + options.sizes.target +
-           " && cmake --build " + folder + "/build-arm --target run\n  dfdyn replay --model " + folder +
-           "/model.json --log another.csv --report another.html\n";
+/// Returns commands for the project in `folder`, one per line. `core`: name of the target.
+std::string next_steps(const std::filesystem::path& folder, const std::string& core) {
+    const auto word = [](const std::filesystem::path& path) { return shell_word(path.string()); };
+    const std::string configure = "  cmake -S " + word(folder) + " -B ";
+    const std::string build = word(folder / "build");
+    const std::string build_arm = word(folder / "build-arm");
+    return configure + build + " && cmake --build " + build + " && " + word(folder / "build/replay_ticks") +
+           "\n" + configure + build_arm +
+           " -DCMAKE_TOOLCHAIN_FILE=cmake/cortex-m.cmake -DDFDYN_CORE=" + core + " && cmake --build " +
+           build_arm + " --target run\n  dfdyn replay --model " + word(folder / "model.json") +
+           " --log another.csv --report another.html\n";
 }
 
 nlohmann::ordered_json json_of(const std::vector<Candidate>& candidates, const Candidate& chosen,
@@ -273,6 +284,7 @@ int run(StartOptions options) {
     require_windows(arm.recordings);
     std::cout << "the set-up shows no mistake\n";
     SplitRecordings split = split_recordings(arm.recordings, training_share);
+    require_varying(split);
     FolderContent files;
     std::vector<Candidate> candidates;
     candidates.push_back(
@@ -287,7 +299,7 @@ int run(StartOptions options) {
     files.merge(project_files(model, split.judging));
     files["model.json"] = checked_json(model, options.folder / "model.json");
     files["README.txt"] =
-        "Written by dfdyn start. Next, in the folder above this one:\n" + next_steps(options);
+        "Written by dfdyn start. Next, in this folder:\n" + next_steps(".", options.sizes.target);
     write_folder(options.folder, files);
     output.print(json_of(candidates, chosen, options));
     say("result");
@@ -295,7 +307,7 @@ int run(StartOptions options) {
     std::cout << options.folder.string() << " has report.html, model.json"
               << (arm.robot ? ", diagnosis.html" : "")
               << ", include/robot_model.hpp and a CMake project. Next:\n"
-              << next_steps(options);
+              << next_steps(options.folder, options.sizes.target);
     return 0;
 }
 

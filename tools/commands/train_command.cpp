@@ -206,6 +206,7 @@ std::vector<Recording> read_recordings(const TrainOptions& options, OutputKind o
     ReadOptions columns;
     columns.outputs = outputs;
     columns.joint_names = robot ? names_of_joints(*robot) : std::vector<std::string>{};
+    columns.prismatic = robot ? prismatic_joints(*robot) : std::vector<bool>{};
     columns.velocity = columns.acceleration = // for the features, and for the rigid body with friction
         training.physics ||
         (sees_derivatives(training) && training.derivatives != DerivativeSource::estimated);
@@ -232,6 +233,12 @@ void fit_rigid_body_of(TrainedModel& model, const ModelTraining& training,
     }
 }
 
+/// Derivatives over the long windows of a fast recording take their time.
+PreparedTraining prepared_samples(std::span<const Recording> recordings, const ModelTraining& training) {
+    const Activity activity("preparing the samples");
+    return prepare_training(recordings, training);
+}
+
 int run(const TrainOptions& options) {
     const JsonOutput output(options.json);
     check_outputs({options.model, options.header}, options.recordings.with({options.robot.urdf}));
@@ -246,12 +253,12 @@ int run(const TrainOptions& options) {
         return 1;
     }
     const double period_s = sample_period_s(recordings);
-    options.clock.apply(training.options, period_s);
+    options.clock.apply(training.options, period_s, options.sizes.given() && free_sizes(options).features);
     const ProgressCallback progress = progress_line(training.options.hyper);
     ModelTrainingResult result =
         options.sizes.given()
             ? train_within(options.sizes, free_sizes(options), recordings, outputs, training, progress)
-            : train_model(prepare_training(recordings, training), outputs, training, progress);
+            : train_model(prepared_samples(recordings, training), outputs, training, progress);
     TrainedModel& model = result.model;
     model.training.recordings = file_names(recordings);
     describe_reading(options.recordings, robot, model);

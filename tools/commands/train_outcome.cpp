@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/train_outcome.hpp"
 
+#include "tools/base/text/text.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/model/structure.hpp"
@@ -55,12 +56,17 @@ void print_hold_out(const std::vector<HoldOutPoint>& points) {
               << " points\n";
 }
 
-void print_kernel(const TrainedModel& model) {
+void print_kernel(const ModelTrainingResult& result) {
+    const TrainedModel& model = result.model;
     std::cout << "features: input " << input_description(model.input.kind).name << ", length scale "
               << model.features.length_scale << ", rho^2/sigma^2 " << model.outputs.prior_variance << '\n';
     for (const std::string& sentence :
          bounds_reached(1 / model.outputs.prior_variance, model.features.length_scale)) {
         std::cout << "  " << sentence << '\n';
+    }
+    if (!result.held_joints.empty()) {
+        std::cout << "  joints held in place, from whose motion nothing is learned: "
+                  << counted_from_one(result.held_joints) << '\n';
     }
 }
 
@@ -88,7 +94,7 @@ void print_outcome(const ModelTrainingResult& result, const std::string& trained
         print_torque_constants(result.torque_gains);
     }
     if (structure_of(model).features) {
-        print_kernel(model);
+        print_kernel(result);
     }
     std::cout << "noise:";
     for (std::size_t k = 0; k < model.outputs.names.size(); ++k) {

@@ -89,7 +89,7 @@ def write_arm(writer):
     subprocess.run([writer.dfdyn, "simulate", "--robot", SMALL_ARM, "--scenario", scenarios / "small_arm.json", "-o", "arm.csv"],
                    cwd=writer.folder, check=True, capture_output=True)
     robot = ["--robot", SMALL_ARM]
-    writer.train("arm.json", "--log", "arm.csv", "--outputs", "tau")
+    writer.train("arm.json", "--log", "arm.csv", "--outputs", "tau", "--model", "P", *robot, "--tip", "tool", "--no-setup-check")
     writer.train("wrench.json", "--log", "arm.csv", "--outputs", "wrench", "--model", "P", *robot, "--tip", "tool", "--no-setup-check")
     writer.run("loop", "--simulate", "--duration", 11, *robot, "--scenario", scenarios / "small_arm_loop.json", "--model", "arm.json",
                "-o", "loop")

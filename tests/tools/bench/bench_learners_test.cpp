@@ -86,5 +86,5 @@ TEST_CASE("the fastest of a kind is the fastest correct one") {
     CHECK(fastest_peer(bench, "float", 100)->learner == "b");
     CHECK(fastest_of(bench, cholesky, "float", 100)->learner == "d");
     CHECK(fastest_peer(bench, "double", 100) == nullptr);
-    CHECK(find_floor(bench, "float", 100) == nullptr);
+    CHECK(find_lower_bound(bench, "float", 100) == nullptr);
 }

@@ -43,7 +43,7 @@ TEST_CASE(
     const LoopBench bench = run_loop_bench(0.2);
     CHECK(bench.pace.ticks == 200);
     CHECK(bench.learned == 190); // after the first ten lags
-    for (const LoopTimes& times : {bench.late, bench.duration}) {
+    for (const TickTimes& times : {bench.late, bench.duration}) {
         CHECK(times.median >= 0);
         CHECK(times.p99 >= times.median);
         CHECK(times.p999 >= times.p99);

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/suites/loop_bench.hpp"
 
-#include "tools/base/numerics/quantile.hpp"
 #include "tools/bench/suites/bench_arm.hpp"
 #include "tools/model/run_time/runtime_estimator.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
-
-LoopTimes summarise(std::vector<double> times_us) {
-    std::ranges::sort(times_us);
-    const auto at = [&](double share) { return quantile_of_sorted(times_us, share); };
-    return {at(0.5), at(0.99), at(0.999), at(0.9999), at(1)};
-}
 
 LoopBench run_loop_bench(double duration_s) {
     const auto estimator = make_estimator(BenchArm::model(), true);
@@ -34,8 +28,8 @@ LoopBench run_loop_bench(double duration_s) {
             duration_us.push_back(1e-3 * static_cast<double>(tick.duration.count()));
         });
     bench.pace = timed.pace;
-    bench.late = summarise(std::move(timed.late_us));
-    bench.duration = summarise(std::move(duration_us));
+    bench.late = summarise(std::move(timed.late_us), 1);
+    bench.duration = summarise(std::move(duration_us), 1);
     bench.not_real_time = timed.not_real_time;
     bench.cores = timed.cores;
     return bench;

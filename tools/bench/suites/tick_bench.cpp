@@ -71,7 +71,7 @@ TickBench run_tick_bench(const std::vector<int>& columns, int largest_peer, cons
             on_share_done((static_cast<double>(i) + share) / static_cast<double>(columns.size()));
         });
     }
-    for (FloorResult& floor : bench.floors) {
+    for (LowerBoundResult& floor : bench.floors) {
         floor.floor.arithmetic = arithmetic_floor_us(floor.columns, floor.scalar, probe.best());
     }
     return bench;
@@ -81,9 +81,10 @@ const TickResult* find_ours(const TickBench& bench, const std::string& scalar, i
     return fastest_of(bench, BenchLearner::Kind::ours, scalar, columns);
 }
 
-const FloorResult* find_floor(const TickBench& bench, const std::string& scalar, int columns) {
-    const auto found = std::ranges::find_if(
-        bench.floors, [&](const FloorResult& one) { return one.scalar == scalar && one.columns == columns; });
+const LowerBoundResult* find_lower_bound(const TickBench& bench, const std::string& scalar, int columns) {
+    const auto found = std::ranges::find_if(bench.floors, [&](const LowerBoundResult& one) {
+        return one.scalar == scalar && one.columns == columns;
+    });
     return found == bench.floors.end() ? nullptr : &*found;
 }
 

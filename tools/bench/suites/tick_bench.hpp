@@ -18,7 +18,7 @@ struct TickResult {
     TickTimes times; ///< empty for a wrong learner
 };
 
-struct FloorResult {
+struct LowerBoundResult {
     std::string scalar;
     int columns = 0;
     MachineLowerBound floor;
@@ -26,7 +26,7 @@ struct FloorResult {
 
 struct TickBench {
     std::vector<TickResult> ticks;
-    std::vector<FloorResult> floors;
+    std::vector<LowerBoundResult> floors;
 };
 
 /// Largest error after `verified_ticks`. A learner with a larger error counts as wrong, independently of its
@@ -41,7 +41,7 @@ TickBench run_tick_bench(const std::vector<int>& columns, int largest_peer, cons
 
 /// Returns the result of dfdyn's learner of this size; nullptr if there is none.
 const TickResult* find_ours(const TickBench& bench, const std::string& scalar, int columns);
-const FloorResult* find_floor(const TickBench& bench, const std::string& scalar, int columns);
+const LowerBoundResult* find_lower_bound(const TickBench& bench, const std::string& scalar, int columns);
 
 /// Returns the fastest correct peer of this size: of one kind, or of all.
 const TickResult* fastest_peer(const TickBench& bench, const std::string& scalar, int columns);

@@ -20,6 +20,7 @@ TickTimes summarise(std::vector<double> times_us, double accepted_share) {
     result.p90 = quantile_of_sorted(times_us, 0.9);
     result.p99 = quantile_of_sorted(times_us, 0.99);
     result.p999 = quantile_of_sorted(times_us, 0.999);
+    result.p9999 = quantile_of_sorted(times_us, 0.9999);
     result.most = times_us.back();
     result.spread = (quantile_of_sorted(times_us, 0.75) - quantile_of_sorted(times_us, 0.25)) / result.median;
     return result;

@@ -7,10 +7,10 @@
 
 namespace dfdyn::tools {
 
-/// Durations of one kind of tick, µs each.
+/// Quantiles of times of one kind of tick, µs each.
 struct TickTimes {
     std::size_t ticks = 0; ///< number of valid ticks
-    double median = 0, p90 = 0, p99 = 0, p999 = 0, most = 0;
+    double median = 0, p90 = 0, p99 = 0, p999 = 0, p9999 = 0, most = 0;
     double spread = 0;   ///< interquartile range relative to the median
     double accepted = 0; ///< share of valid repetitions
 };

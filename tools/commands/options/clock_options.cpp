@@ -4,19 +4,18 @@
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/commands/options/value_checks.hpp"
-#include "tools/model/inputs/input_description.hpp"
+#include "tools/sizing/size_choice.hpp"
 #include "tools/training/data/lag_spacing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <string>
 
 namespace dfdyn::tools {
 
 namespace {
-
-constexpr int least_lags = 2;
 
 LagSpacing spacing(const ClockOptions& options, bool contiguous, double period_s) {
     if (options.lags) {
@@ -28,12 +27,28 @@ LagSpacing spacing(const ClockOptions& options, bool contiguous, double period_s
                          " sample periods, " + number_text(largest_lag_count * period_s) + " s, found " +
                          number_text(window_s) + " s");
     }
-    if (options.every || contiguous) {
-        const int every = options.every.value_or(1);
-        const double lags = std::round(window_s / (period_s * every));
-        return {std::max(least_lags, static_cast<int>(lags)), every};
+    if (options.every) {
+        const double lags = std::round(window_s / (period_s * *options.every));
+        return {std::max(least_window_lags, static_cast<int>(lags)), *options.every};
     }
-    return spacing_of(window_s, period_s, least_lags);
+    return spacing_of(window_s, period_s, contiguous ? largest_lag_count : most_spaced_lags);
+}
+
+/// Throws InputError if the learner has fewer samples in memory than it has weights, those of the smallest
+/// model if a budget chooses the number of features.
+void check_memory(double memory_s, TrainingOptions training, double period_s, bool free_features) {
+    training.feature_count = free_features ? least_feature_count : training.feature_count;
+    const double least = least_forgetting_factor(training);
+    if (training.forgetting_factor < least) {
+        const double samples = std::round(1 / (1 - least));
+        throw InputError("--memory: expected at least " + number_text(samples * period_s) + " s (2 samples" +
+                         (training.model->features ? " per feature" : "") + " at " +
+                         rounded_text(1 / period_s) + " Hz" +
+                         (training.model->features && free_features
+                              ? ", with " + std::to_string(least_feature_count) + " features"
+                              : "") +
+                         "), found " + number_text(memory_s) + " s");
+    }
 }
 
 } // namespace
@@ -70,27 +85,33 @@ void ClockOptions::add_to(CLI::App& command) {
         ->excludes(memory);
 }
 
-void ClockOptions::apply(TrainingOptions& training, double period_s) const {
-    const bool contiguous =
-        input_description(training.input).uses_derivatives() || training.hyper == HyperMethod::CV;
-    const LagSpacing chosen = spacing(*this, contiguous, period_s);
+void ClockOptions::apply(TrainingOptions& training, double period_s, bool free_features) const {
+    const LagSpacing chosen = spacing(*this, needs_contiguous_lags(training), period_s);
     training.lags = chosen.lags;
     training.every = chosen.every;
     if (forgetting_factor) {
         training.forgetting_factor = *forgetting_factor;
     } else if (memory_s) {
-        training.forgetting_factor = std::exp(-period_s / *memory_s);
+        training.forgetting_factor = forgetting_factor_of(*memory_s, period_s);
+        check_memory(*memory_s, training, period_s, free_features);
     }
 }
 
 std::string describe_clock(const TrainingOptions& training, double period_s) {
-    const double lambda = training.forgetting_factor;
+    constexpr double same_memory = 0.01;
+    const double wanted = training.forgetting_factor;
+    const double stored = stored_forgetting_factor(wanted);
+    const double wanted_s = wanted < 1 ? memory_of(wanted, period_s) : 0;
+    const double stored_s = stored < 1 ? memory_of(stored, period_s) : 0;
     std::ostringstream text;
     text << std::setprecision(4) << "sample period " << period_s << " s, window "
          << period_s * training.lags * training.every << " s (" << training.lags << " lags, "
          << training.every << (training.every == 1 ? " sample" : " samples") << " apart), memory ";
-    if (lambda < 1) {
-        text << -period_s / std::log(lambda) << " s";
+    if (std::abs(stored_s - wanted_s) > same_memory * wanted_s) {
+        text << (stored < 1 ? number_text(std::round(stored_s)) + " s" : "unlimited") << " (" << wanted_s
+             << " s rounded to single precision)";
+    } else if (wanted < 1) {
+        text << wanted_s << " s";
     } else {
         text << "unlimited";
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/training/train.hpp"
+#include "tools/training/training_options.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -25,12 +25,16 @@ struct ClockOptions {
 
     /// Sets lags, their spacing and the forgetting factor for recordings with this sample period. Input and
     /// method must be set before, because input STD and cross validation require lags one sample apart.
-    /// Throws InputError for a window of more than 1000 samples and for a memory shorter than a sample
-    /// period.
-    void apply(TrainingOptions& training, double period_s) const;
+    /// The model must be set, and the number of features unless `free_features`: a budget chooses it later.
+    /// Throws InputError for a window of more than 1000 samples, and for `memory_s` of fewer samples than the
+    /// features have columns (2 samples without features). With `free_features`, these are the columns of
+    /// least_feature_count features.
+    void apply(TrainingOptions& training, double period_s, bool free_features = false) const;
 };
 
-/// Returns text like "sample period 0.001 s, window 0.08 s (20 lags, 4 samples apart), memory unlimited".
+/// Returns text like "sample period 0.001 s, window 0.08 s (20 lags, 4 samples apart), memory unlimited". The
+/// memory is that of the model, if its forgetting factor in single precision has another one by more than 1
+/// %.
 std::string describe_clock(const TrainingOptions& training, double period_s);
 
 } // namespace dfdyn::tools

@@ -51,7 +51,7 @@ void RecordingOptions::add_to(CLI::App& command) {
     command
         .add_option(
             "--units", units,
-            "Other units than s, rad, N m and A: of t (s, ms, us, ns), q and qd (rad, deg, turn, "
+            "Other units than s, rad, N m and A: of t (s, ms, us, ns), q and qd (rad, mrad, deg, turn, "
             "ticks:N per turn, m, mm), tau (Nm, mNm), i (A, mA), wrench (N, mN); one per quantity, or "
             "one per joint, separated by |")
         ->type_name("q=deg,t=ns,...");
@@ -74,6 +74,7 @@ std::vector<Recording> RecordingOptions::read(ReadOptions options) const {
     options.skip_bad_rows = skip_bad_rows;
     options.columns = parse_column_patterns(columns);
     options.units = parse_units(units);
+    check_units(options.units, options.prismatic);
     options.topics = topics;
     std::vector<Recording> recordings = read_recordings(logs, options);
     for (const Recording& recording : recordings) {

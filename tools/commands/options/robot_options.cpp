@@ -77,6 +77,7 @@ ReadOptions columns_for(const Robot& robot, OutputKind outputs) {
     columns.joint_count = robot.joints.size();
     columns.outputs = outputs;
     columns.joint_names = names_of_joints(robot);
+    columns.prismatic = prismatic_joints(robot);
     return columns;
 }
 

@@ -63,6 +63,16 @@ TEST_CASE("window and memory are described in seconds") {
           "sample period 0.0002 s, window 0.08 s (20 lags, 20 samples apart), memory 20 s");
 }
 
+TEST_CASE("a memory that single precision changes is described as the model has it") {
+    ClockOptions clock;
+    clock.memory_s = 7200;
+    CHECK_THAT(describe_clock(applied(clock, 0.0002), 0.0002),
+               Catch::Matchers::EndsWith(", memory unlimited (7200 s rounded to single precision)"));
+    clock.memory_s = 2000;
+    CHECK_THAT(describe_clock(applied(clock, 0.0002), 0.0002),
+               Catch::Matchers::EndsWith(", memory 1678 s (2000 s rounded to single precision)"));
+}
+
 TEST_CASE("input STD has lags of one sample") {
     CHECK(applied({}, 0.001, InputKind::STD).every == 1);
     CHECK(applied({}, 0.001, InputKind::STD).lags == 80);
@@ -73,6 +83,28 @@ TEST_CASE("a window with more samples than a model can have is rejected") {
     clock.window_s = 0.3;
     CHECK_THROWS_WITH(applied(clock, 0.0002),
                       "--window: expected at most 1000 sample periods, 0.2 s, found 0.3 s");
+}
+
+TEST_CASE("a memory of fewer samples than weights is rejected in seconds") {
+    ClockOptions clock;
+    clock.memory_s = 0.1;
+    TrainingOptions options; // 250 features
+    CHECK_THROWS_WITH(clock.apply(options, 0.008),
+                      "--memory: expected at least 4 s (2 samples per feature at 125 Hz), found 0.1 s");
+    CHECK_THROWS_WITH(clock.apply(options, 0.008, true), // a budget chooses fewer features
+                      "--memory: expected at least 0.16 s (2 samples per feature at 125 Hz, with 10 "
+                      "features), found 0.1 s");
+    clock.memory_s = 0.16;
+    CHECK_NOTHROW(clock.apply(options, 0.008, true));
+    clock.memory_s = 0.1;
+    options.model = &structures::P;
+    CHECK_NOTHROW(clock.apply(options, 0.008));
+    clock.memory_s = 0.01;
+    CHECK_THROWS_WITH(clock.apply(options, 0.008),
+                      "--memory: expected at least 0.016 s (2 samples at 125 Hz), found 0.01 s");
+    clock.memory_s = 4;
+    options.model = &structures::NP;
+    CHECK_NOTHROW(clock.apply(options, 0.008));
 }
 
 } // namespace clock_options_test
