@@ -21,23 +21,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Returns the suspicions about the set-up, mistakes first.
-std::vector<Suspicion> suspicions_of_setup(const Robot& robot, const Recording& recording,
-                                           const DiagnosisOptions& options) {
-    const bool several = options.parts.size() > 1;
-    std::vector<Suspicion> suspicions;
-    for (const Recording& part : several ? options.parts : std::span(&recording, 1)) {
-        for (const SetupFinding& finding :
-             check_setup(part, {options.outputs, &robot, options.torque_constants})) {
-            const bool mistake = finding.severity == Severity::mistake;
-            suspicions.push_back({finding.text, mistake ? std::string(name_of(finding.fault)) : "",
-                                  mistake ? finding.columns : "", several ? shown(part.source) : ""});
-        }
-    }
-    std::ranges::stable_sort(suspicions, {}, [](const Suspicion& one) { return one.code.empty(); });
-    return suspicions;
-}
-
 /// Adds suspicions. Returns whether the diagnosis is refused.
 bool suspect(Diagnosis& diagnosis, std::vector<Suspicion> suspicions) {
     std::ranges::move(suspicions, std::back_inserter(diagnosis.suspicions));
@@ -69,16 +52,29 @@ Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOpt
     return Eigen::Map<const Eigen::VectorXd>(gains.data(), signals.outputs());
 }
 
-bool refuses_setup(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
-    Diagnosis diagnosis;
-    return options.check_setup && suspect(diagnosis, suspicions_of_setup(robot, recording, options));
+std::vector<Suspicion> suspicions_of_setup(const Robot& robot, const Recording& recording,
+                                           const DiagnosisOptions& options) {
+    const bool several = options.parts.size() > 1;
+    std::vector<Suspicion> suspicions;
+    for (const Recording& part : several ? options.parts : std::span(&recording, 1)) {
+        for (const SetupFinding& finding :
+             check_setup(part, {options.outputs, &robot, options.torque_constants})) {
+            const bool mistake = finding.severity == Severity::mistake;
+            suspicions.push_back({finding.text, mistake ? std::string(name_of(finding.fault)) : "",
+                                  mistake ? finding.columns : "", several ? shown(part.source) : ""});
+        }
+    }
+    std::ranges::stable_sort(suspicions, {}, [](const Suspicion& one) { return one.code.empty(); });
+    return suspicions;
 }
 
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
     DiagnosisWork work;
     work.diagnosis.output_names = recording.output.names;
     set_output_units(work.diagnosis, robot, options.outputs);
-    if (options.check_setup && suspect(work.diagnosis, suspicions_of_setup(robot, recording, options))) {
+    if (options.check_setup &&
+        suspect(work.diagnosis,
+                options.setup ? *options.setup : suspicions_of_setup(robot, recording, options))) {
         return work;
     }
     if (suspect(work.diagnosis, suspicions_of_file(recording))) {

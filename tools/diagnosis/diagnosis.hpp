@@ -119,11 +119,14 @@ struct Diagnosis {
     std::vector<Unexplained> unexplained;
 };
 
-/// Returns whether no cause is named, because the set-up is wrong or the recording is unsuitable.
-inline bool refused(const Diagnosis& diagnosis) {
-    return std::ranges::any_of(diagnosis.suspicions,
+/// Returns whether one of the suspicions refuses a recording.
+inline bool any_refusal(const std::vector<Suspicion>& suspicions) {
+    return std::ranges::any_of(suspicions,
                                [](const Suspicion& suspicion) { return !suspicion.code.empty(); });
 }
+
+/// Returns whether no cause is named, because the set-up is wrong or the recording is unsuitable.
+inline bool refused(const Diagnosis& diagnosis) { return any_refusal(diagnosis.suspicions); }
 
 /// Returns whether part of the recording was held out, so that the errors are measured there.
 inline bool has_held_out(const Diagnosis& diagnosis) {
@@ -140,6 +143,7 @@ struct DiagnosisOptions {
     /// Recordings that are joined in the diagnosed one, whose set-ups are checked; empty: it is a single one.
     std::span<const Recording> parts = {};
     bool check_setup = true; ///< false: continues even if units, clock, columns or signs look wrong
+    std::optional<std::vector<Suspicion>> setup = {}; ///< findings of the set-up check, if it was done
     std::function<void(int round)> progress = {};
     std::span<const Effect> effects = effect_catalogue(); ///< that can be named
 };
@@ -169,8 +173,10 @@ inline bool effects_fitted(const DiagnosisWork& work) {
 /// given or estimated, unless the options have such gains.
 Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOptions& options);
 
-/// Returns whether the set-up check, if it is asked for, refuses the recording.
-bool refuses_setup(const Robot& robot, const Recording& recording, const DiagnosisOptions& options);
+/// Checks the set-up of the recording, or of several `options.parts` instead. Returns the suspicions, those
+/// that refuse a recording first.
+std::vector<Suspicion> suspicions_of_setup(const Robot& robot, const Recording& recording,
+                                           const DiagnosisOptions& options);
 
 /// Diagnoses a recording. Throws InputError if the recording is too short or does not match the robot.
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options);

@@ -4,7 +4,6 @@
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/numerics/quantum.hpp"
 #include "tools/base/recording/columns_matrix.hpp"
-#include "tools/base/recording/stretches.hpp"
 #include "tools/base/text/instant.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
@@ -132,7 +131,7 @@ bool saturated(const Limit& limit) {
 }
 
 /// Returns whether a saturated output reaches the value of a run from nearby. The value of a dead channel can
-/// also be the largest or smallest, but the output sizes to it.
+/// also be the largest or smallest, but the output jumps to it.
 bool clipped(const Recording& recording, std::size_t output, const Run& run) {
     constexpr double nearby = 0.1; // of the range
     const Range range = range_of(recording, output);

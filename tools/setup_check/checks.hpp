@@ -131,8 +131,9 @@ SetupFindings check_output_delay(const ArmRecording& arm, const RigidParts& part
 ///
 /// The criterion is the sum over the outputs of the logarithm of the variance left by the set-up over the
 /// variance left by the alternative: 0.8 and more is a mistake, 0.5 a warning. For a wrench, exchanges and
-/// signs of positions are never a mistake, nor is gravity for an arm of one joint. Cost: 3 n^2 / 2 times
-/// 1,000 rigid-body regressors if some output is not explained, otherwise 2,000.
+/// signs of positions are never a mistake, nor is gravity for an arm of one joint. Cost: about
+/// n^2 / 2 + 5 n alternatives of 2,000 rigid-body regressors each if some output is not explained, otherwise
+/// none.
 SetupFindings check_readings(const ArmRecording& arm, const RigidParts& parts);
 
 /// Compares the set-up with zeros of one joint that are 90 or 180 degrees away, by the same criterion. A zero

@@ -84,20 +84,19 @@ std::string other_scale_text(const ArmRecording& arm, double factor) {
                       ", another unit, or masses in the robot's file that are too large");
 }
 
-/// Returns whether the shape of an output is that of gravity and the joint moves. Without gravity a rotor can
-/// make an output many times as large as the links do.
-bool shows_gravity(const ArmRecording& arm, const RigidParts& parts, Index k) {
-    constexpr double least_share = 0.1; // of the largest deviation of gravity
-    const auto deviation = [](const auto& column) {
-        return (column.array() - column.mean()).matrix().norm();
-    };
-    double largest = 0;
-    for (const auto column : parts.gravity.colwise()) {
-        largest = std::max(largest, deviation(column));
+/// Returns the sizes of the outputs whose shape is that of gravity and whose joint moves. Without gravity a
+/// rotor can make an output many times as large as the links do.
+OutputSizes sizes_by_gravity(const ArmRecording& arm, const RigidParts& parts, const OutputSizes& sizes) {
+    const VectorXd weight = deviations(parts.gravity);
+    const VectorXd inertia = deviations(parts.inertia);
+    OutputSizes result;
+    for (Index k = 0; k < arm.counted(); ++k) {
+        if (weight[k] > least_gravity_share * weight.maxCoeff() && weight[k] > inertia[k] &&
+            swings(arm.recorded.motion, k, 1)) {
+            result.push_back(sizes[static_cast<std::size_t>(k)]);
+        }
     }
-    const double weight = deviation(parts.gravity.col(k));
-    return weight > least_share * largest && weight > deviation(parts.inertia.col(k)) &&
-           swings(arm.recorded.motion, k, 1);
+    return result;
 }
 
 std::string heavy_text(const ArmRecording& arm, double factor) {
@@ -149,12 +148,8 @@ SetupFindings check_output_scale(const ArmRecording& arm, const RigidParts& part
     if (!arm.gains_known || arm.wrench()) {
         return {};
     }
-    OutputSizes by_gravity; // a rotor that the file lacks can dominate the other joints
-    for (Index k = 0; k < arm.counted(); ++k) {
-        if (shows_gravity(arm, parts, k)) {
-            by_gravity.push_back(sizes[static_cast<std::size_t>(k)]);
-        }
-    }
+    // a rotor that the file lacks can dominate the other joints
+    const OutputSizes by_gravity = sizes_by_gravity(arm, parts, sizes);
     std::vector<double> values = known(by_gravity);
     if (values.empty()) {
         values = known(sizes);

@@ -201,12 +201,12 @@ void add_degrees(const ArmRecording& arm, std::vector<Reading>& readings) {
 std::vector<Reading> other_zeros(const ArmRecording& arm) {
     std::vector<Reading> readings;
     for (std::size_t joint = 0; joint < arm.robot.joints.size(); ++joint) {
+        if (arm.robot.joints[joint].prismatic) {
+            continue;
+        }
         const std::string& column = arm.recording.position.names[joint];
         for (const auto& [quarters, remedy] :
              {std::pair{-1, "subtract pi/2"}, {1, "add pi/2"}, {2, "add pi"}}) {
-            if (arm.robot.joints[joint].prismatic) {
-                continue;
-            }
             RobotMotion motion = arm.recorded.motion;
             motion.position.col(static_cast<Index>(joint)).array() += quarters * std::numbers::pi / 2;
             readings.push_back(

@@ -173,7 +173,7 @@ double largest_weight(const Robot& robot) {
         mass += joint.inertia[0];
         reach += joint.placement.translation().norm() + (joint.prismatic ? largest_limit(joint) : 0);
     }
-    return gravity * mass * std::max(1.0, reach);
+    return gravity * mass * reach;
 }
 
 } // namespace

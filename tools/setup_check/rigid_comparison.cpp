@@ -109,7 +109,7 @@ double heaviest_payload(const Robot& robot) {
 
 /// `regressor`: of the last link along the motion, stacked, 10 columns. The payloads differ in their first
 /// moments only, so that a sum with nonnegative factors is a payload between the corners. Their moments of
-/// inertia are those of a point mass at the tip: the factor of the arm's inertia makes up for more.
+/// inertia are those of a point mass at the tip; the free factor of the arm's inertia covers larger ones.
 std::vector<MatrixXd> loaded_outputs(const Robot& robot, const MatrixXd& gravity, const MatrixXd& regressor) {
     constexpr double reach = 0.15; // m, along each axis of the last link
     const double mass = heaviest_payload(robot);
@@ -147,6 +147,10 @@ RigidParts rigid_parts(const Robot& robot, OutputKind kind, const RobotMotion& m
         }
     }
     return parts;
+}
+
+VectorXd deviations(const MatrixXd& columns) {
+    return (columns.rowwise() - columns.colwise().mean()).colwise().norm();
 }
 
 VectorXd friction_direction(const VectorXd& velocity) {

@@ -44,8 +44,8 @@ struct ArmRecording {
 struct RigidParts {
     Eigen::MatrixXd gravity; ///< torque at standstill at each position
     Eigen::MatrixXd inertia; ///< additional torque of the motion
-    /// Gravity, and gravity and inertia of the heaviest plausible payload at each corner of a cube of 0.3 m
-    /// around the tip: 8 matrices, none for a wrench.
+    /// The arm's gravity plus gravity and inertia of the heaviest plausible payload, at each corner of a cube
+    /// of 0.3 m around the tip: 8 matrices, none for a wrench.
     std::vector<Eigen::MatrixXd> loaded;
 
     Eigen::VectorXd sum(Eigen::Index k) const { return gravity.col(k) + inertia.col(k); }
@@ -53,6 +53,12 @@ struct RigidParts {
 
 /// Returns the outputs of the rigid body along `motion`, T states. Cost: 2 T rigid-body regressors.
 RigidParts rigid_parts(const Robot& robot, OutputKind kind, const RobotMotion& motion);
+
+/// Returns the norm of each column's deviation from its mean.
+Eigen::VectorXd deviations(const Eigen::MatrixXd& columns);
+
+/// Least deviation of gravity's torque at a joint that counts as loaded by gravity.
+inline constexpr double least_gravity_share = 0.1; ///< of the largest deviation of gravity
 
 /// Viscous and Coulomb friction of a joint: velocity and friction_direction(), T x 2.
 Eigen::MatrixXd friction_columns(const RobotMotion& motion, Eigen::Index joint);

@@ -67,14 +67,9 @@ std::optional<Comparison> compare(const ArmRecording& arm, const RigidParts& par
                       any.left / free_share};
 }
 
-VectorXd deviations(const MatrixXd& columns) {
-    return (columns.rowwise() - columns.colwise().mean()).colwise().norm();
-}
-
 } // namespace
 
 SetupFindings check_robot_match(const ArmRecording& arm, const RigidParts& parts) {
-    constexpr double least_gravity_share = 0.1; // of the largest deviation of gravity
     constexpr double least_share = 0.01;
     constexpr double least_log_ratio = 1.2;
     constexpr double least_residual = 0.06;

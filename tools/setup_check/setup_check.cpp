@@ -18,8 +18,8 @@ void append(SetupFindings& findings, SetupFindings&& more) {
                     std::make_move_iterator(more.end()));
 }
 
-/// Returns the finding of the first check with one, because later checks would report the same mistake
-/// differently, and a common delay, which can be the reason for it.
+/// Returns the findings of the first check that has any, because later checks would report the same mistake
+/// differently; and a common delay, which can be its reason.
 SetupFindings check_by_robot(const Recording& recording, const SetupQuestion& question,
                              CheckedMotion checked) {
     const bool current = question.outputs == OutputKind::motor_current;

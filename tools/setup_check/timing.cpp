@@ -196,11 +196,10 @@ SetupFindings check_output_delay(const ArmRecording& arm, const RigidParts& part
                                  const std::vector<std::size_t>& rows) {
     constexpr double clearly = -0.15;
     constexpr std::size_t fewest = 2;
-    constexpr std::size_t fewest_states = 100;
-    const double step_s = median_step_s(arm.recording);
-    if (arm.wrench() || rows.size() < fewest_states) {
+    if (arm.wrench()) {
         return {};
     }
+    const double step_s = median_step_s(arm.recording);
     const auto spacing = static_cast<Index>(std::max(1.0, std::round(delay_step_s / step_s)));
     const DelayGrid grid{spacing, static_cast<Index>(longest_delay_s / step_s) / spacing};
     std::vector<std::size_t> moving;

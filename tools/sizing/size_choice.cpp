@@ -163,8 +163,7 @@ class SizeSearch {
         result.model.limits.innovation = std::numeric_limits<float>::max();
         result.candidate = {options, period_s_ * options.lags * options.every, 0, needs_of(result.model),
                             held_out_error(result.model, split_.judging)};
-        const double lambda = stored_forgetting_factor(options.forgetting_factor);
-        result.candidate.memory_s = lambda < 1 ? memory_of(lambda, period_s_) : 0;
+        result.candidate.memory_s = memory_of(stored_forgetting_factor(options.forgetting_factor), period_s_);
         return result;
     }
 
@@ -208,7 +207,7 @@ class SizeSearch {
 
     void choose_window(bool fewer_features) {
         const TrainingOptions base = best_->options;
-        const int most_lags = needs_contiguous_lags(base) ? largest_lag_count : most_spaced_lags;
+        const int most_lags = most_window_lags(base);
         for (const double window_s : windows_s) {
             TrainingOptions options = base;
             const LagSpacing spacing = spacing_of(window_s, period_s_, most_lags);

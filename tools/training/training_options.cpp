@@ -147,14 +147,16 @@ PriorForm parse_prior_form(const std::string& name) { return named(prior_names, 
 
 HyperMethod parse_hyper_method(const std::string& name) { return named(method_names, "--hyper", name); }
 
-bool needs_contiguous_lags(const TrainingOptions& options) {
-    return input_description(options.input).uses_derivatives() || options.hyper == HyperMethod::CV;
+int most_window_lags(const TrainingOptions& options) {
+    const bool contiguous =
+        input_description(options.input).uses_derivatives() || options.hyper == HyperMethod::CV;
+    return contiguous ? largest_lag_count : most_spaced_lags;
 }
 
 double forgetting_factor_of(double memory_s, double period_s) { return std::exp(-period_s / memory_s); }
 
 double memory_of(double forgetting_factor, double period_s) {
-    return -period_s / std::log(forgetting_factor);
+    return forgetting_factor < 1 ? -period_s / std::log(forgetting_factor) : 0;
 }
 
 double stored_forgetting_factor(double forgetting_factor) {

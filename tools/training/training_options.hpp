@@ -85,14 +85,16 @@ struct TrainingOptions {
 PriorForm parse_prior_form(const std::string& name);
 HyperMethod parse_hyper_method(const std::string& name);
 
-/// Returns whether the lags must be one sample apart: for inputs of derivatives and for cross validation.
-bool needs_contiguous_lags(const TrainingOptions& options);
+/// Returns the largest number of lags of a window that is given in seconds. For inputs of derivatives and for
+/// cross validation it is that of any window, because their lags must be one sample apart.
+int most_window_lags(const TrainingOptions& options);
 
 /// Returns the forgetting factor per sample with which a sample weighs 1/e of a new one after `memory_s`:
 /// exp(-period_s / memory_s). Both > 0.
 double forgetting_factor_of(double memory_s, double period_s);
 
-/// Returns the inverse of forgetting_factor_of(): the memory (s). 0 < forgetting_factor < 1, period_s > 0.
+/// Returns the inverse of forgetting_factor_of(): the memory (s); 0 for one that is unlimited, at a factor
+/// of 1. 0 < forgetting_factor <= 1, period_s > 0.
 double memory_of(double forgetting_factor, double period_s);
 
 /// Returns the forgetting factor as a model has it, in single precision. 1 above 1 - 3e-8, a memory of 3.4e7

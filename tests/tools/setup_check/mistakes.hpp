@@ -37,8 +37,9 @@ std::vector<Cut> cuts_of(const tools::Recording& recording);
 void change_positions(tools::Recording& recording, const std::function<void(double*)>& change);
 void change_outputs(tools::Recording& recording, const std::function<void(double*)>& change);
 
-/// Multiplies the times by `factor`.
+/// Multiplies all values by `factor`.
 void scale(tools::Columns& columns, double factor);
+/// Multiplies the times by `factor`.
 void scale_clock(tools::Recording& recording, double factor);
 
 } // namespace dfdyn::tests

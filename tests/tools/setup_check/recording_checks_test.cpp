@@ -274,9 +274,7 @@ TEST_CASE("continuous joints of a robot may turn several times") {
 
 TEST_CASE("torques of a heavy arm are not taken for mN·m") {
     Recording heavy = swinging();
-    for (double& torque : heavy.output.values) {
-        torque *= 5000;
-    }
+    scale(heavy.output, 5000);
     Robot robot = with_limits(-3, 3);
     check_single(check_output_unit(heavy, OutputKind::joint_torque, &robot), Severity::mistake, "mN·m");
     for (RobotJoint& joint : robot.joints) {
@@ -284,9 +282,7 @@ TEST_CASE("torques of a heavy arm are not taken for mN·m") {
         joint.placement.translation() = Eigen::Vector3d::UnitX();
     }
     CHECK(check_output_unit(heavy, OutputKind::joint_torque, &robot).empty());
-    for (double& torque : heavy.output.values) {
-        torque *= 1000;
-    }
+    scale(heavy.output, 1000);
     check_single(check_output_unit(heavy, OutputKind::joint_torque, &robot), Severity::mistake, "mN·m");
 }
 

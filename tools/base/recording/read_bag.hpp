@@ -12,8 +12,9 @@ namespace dfdyn::tools {
 /// the times of the joint states. Rows are in the order of the messages' stamps. Joints are in the order of
 /// `options.joint_names`, otherwise of the first message; messages that lack one of them are not used.
 ///
-/// Joint states between wrenches that are more than three median steps of the slower topic apart are not
-/// used. The next row then has `gap_before`, and a note counts them.
+/// Joint states between wrenches that are more than three usual steps of the slower topic apart are not used.
+/// The usual step of the joint states is the median; that of the wrenches is the 98 % quantile, because some
+/// sensors send in bursts. The next row then has `gap_before`, and a note counts them.
 ///
 /// Throws InputError with the place for damaged content, topics or joints that are missing, and, unless
 /// `skip_bad_rows`, rows with equal times or values that are not finite.

@@ -3,6 +3,7 @@
 
 #include "tools/can/arm/bus_wire.hpp"
 #include "tools/can/arm/device_frames.hpp"
+#include "tools/can/families/family.hpp"
 
 #include <algorithm>
 
@@ -210,9 +211,9 @@ void BusCheck::watch_joints(const hal::Frame& frame) {
 /// Returns the identifier under which the frame is counted. All boards are of one family.
 BusStreamKey BusCheck::key_of(const hal::Frame& frame) const {
     const BusStreamKey own{frame.extended, frame.id};
-    return boards_.empty() || streams_.contains(own)
-               ? own
-               : BusStreamKey{frame.extended, boards_.front().board->stream_id(frame)};
+    const auto stream_id = description_ ? description_->joint_family->stream_id : nullptr;
+    return stream_id == nullptr || streams_.contains(own) ? own
+                                                          : BusStreamKey{frame.extended, stream_id(frame)};
 }
 
 /// Returns the stream of the frame's identifier; null if there is no room for another stream.

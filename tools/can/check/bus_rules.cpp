@@ -80,7 +80,7 @@ std::string jumps(const BusCheck& check) {
     const StreamClock& clock = check.clock();
     std::string text;
     if (clock.steps() > 0) {
-        const double step_s = 1e-9 * static_cast<double>(clock.largest_step_ns());
+        const double step_s = seconds_of(clock.largest_step_ns());
         text = "all stamps go " + number_text(std::abs(step_s)) + " s " + (step_s < 0 ? "back" : "ahead") +
                " at once" +
                (clock.steps() > 1 ? ", or less, " + std::to_string(clock.steps()) + " times" : "") +

@@ -49,7 +49,7 @@ struct Source {
     double largest_gap_with_strays() const {
         return std::min(largest_gap + static_cast<double>(stream.strays), BusStream::gap_periods);
     }
-    double gap_periods() const { return periods(1e-9 * static_cast<double>(stream.longest_gap_ns)); }
+    double gap_periods() const { return periods(seconds_of(stream.longest_gap_ns)); }
     double jitter_periods() const { return periods(stream.jitter_s()); }
     bool silent() const { return stream.expected_hz > 0 && stream.count == 0; }
     bool stopped() const {

@@ -39,9 +39,6 @@ class Board {
     virtual std::optional<hal::Frame> heartbeat() const { return std::nullopt; }
     /// Time after which its values require another heartbeat; 0: none is required.
     virtual std::int64_t heartbeat_timeout_ns() const { return 0; }
-    /// Identifier under which its frames are counted: that of the frame, without bits that change from frame
-    /// to frame.
-    virtual std::uint32_t stream_id(const hal::Frame& frame) const noexcept { return frame.id; }
     /// Findings from all decoded frames together.
     virtual std::vector<BusFinding> findings() const { return {}; }
     /// True for a frame on an identifier of its values that carries none: a request of the host, or another
@@ -117,13 +114,6 @@ class BoardOf : public Board {
             return codec_.config().heartbeat_timeout_ns;
         } else {
             return 0;
-        }
-    }
-    std::uint32_t stream_id(const hal::Frame& frame) const noexcept final {
-        if constexpr (requires { Codec::stream_id(frame); }) {
-            return Codec::stream_id(frame);
-        } else {
-            return frame.id;
         }
     }
     hal::FrameList encode(const std::array<hal::JointValue, 2>& values) const noexcept final {

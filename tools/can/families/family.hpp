@@ -52,7 +52,8 @@ struct JointFamily {
     /// nothing.
     Recognition (*recognise)(FrameSpan frames) = nullptr;
     std::string_view no_draft = {}; ///< reason why its recognition has no `quantity`; "": it has one
-    /// Returns the identifier of a frame without the state of its sender; null: identifiers contain none.
+    /// Returns the identifier of a frame without the state of its sender, as in the frames of the codec's
+    /// `encode`; null: identifiers contain none.
     std::uint32_t (*stream_id)(const hal::Frame& frame) = nullptr;
 
     /// Returns the frame at which synchronous devices measure; null: they cannot be synchronous.

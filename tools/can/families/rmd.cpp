@@ -156,7 +156,7 @@ void add_silent_rmd_motors(FrameSpan frames, hal::RmdDriver driver, const std::s
         };
         const auto all = count([](const hal::Frame&) { return true; });
         const auto known = count([](const hal::Frame& frame) { return is_rmd_answer(frame.data[0]); });
-        if (all > 0 && 10 * known >= 9 * all) {
+        if (10 * known >= 9 * all) {
             recognition.identifiers.insert({false, id});
         }
     }
@@ -235,8 +235,8 @@ JointFamily rmd() {
             .pitfalls = {"V2 drivers answer on the identifier of the requests, with 33/2048 A per count.",
                          "The angle in the answer to 0x9C has steps of 1 °: too coarse to learn from.",
                          "A request has the first byte of its answer; with V2 drivers its identifier, too.",
-                         "A V2 driver's angle of exactly 0 looks like its request: it counts at rest only, "
-                         "and only if it is answered.",
+                         "A V2 driver's angle of exactly 0 looks like its request: it is used only at "
+                         "speed 0, and only if both frames, request and answer, came.",
                          "V2 drivers: 0xA5 and 0xA6 have the direction where answers have the temperature."},
             .recognise = recognise_rmd};
 }

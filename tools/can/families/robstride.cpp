@@ -161,6 +161,17 @@ void add_robstride_identifiers(FrameSpan frames, const std::set<unsigned>& answe
     }
 }
 
+/// Returns the frames that none of the `answering` motors sent: answers look like commands to a motor with
+/// the number of the host.
+std::vector<hal::Frame> without_answers(FrameSpan frames, const std::set<unsigned>& answering) {
+    std::vector<hal::Frame> others(frames.begin(), frames.end());
+    std::erase_if(others, [&](const hal::Frame& frame) {
+        const std::optional<unsigned> sender = hal::RobstrideMotor::answering_motor(frame);
+        return sender && answering.contains(*sender);
+    });
+    return others;
+}
+
 Recognition recognise_private_robstride(FrameSpan frames) {
     Recognition recognition;
     recognition.quantity = "tau";
@@ -185,9 +196,10 @@ Recognition recognise_private_robstride(FrameSpan frames) {
         }
     }
     if (!answering.empty()) {
-        recognition.silent = silent_motors(frames, 1, 254, answering, [](unsigned motor) {
-            return hal::RobstrideMotor({.motor_id = static_cast<int>(motor)});
-        });
+        recognition.silent =
+            silent_motors(without_answers(frames, answering), 1, 254, answering, [](unsigned motor) {
+                return hal::RobstrideMotor({.motor_id = static_cast<int>(motor)});
+            });
     }
     add_robstride_identifiers(frames, answering, recognition.identifiers);
     recognition.fields = {{"protocol", "private"}, {"host_id", identifier_text(main_host->first)}};

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/motors/codec_fit.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace dfdyn::tools {
 
 namespace {
@@ -55,9 +58,8 @@ double usual_rate_hz(std::span<const std::int64_t> stamps_ns) {
     }
     const std::size_t intervals = std::min(most_intervals, stamps_ns.size() - 1);
     const double mean_hz = mean_rate_hz(stamps_ns, intervals);
-    const std::ptrdiff_t shorter = std::ranges::count_if(durations_of(stamps_ns, 1), [&](std::int64_t ns) {
-        return 1e-9 * static_cast<double>(ns) * mean_hz < much_shorter;
-    });
+    const std::ptrdiff_t shorter = std::ranges::count_if(
+        durations_of(stamps_ns, 1), [&](std::int64_t ns) { return seconds_of(ns) * mean_hz < much_shorter; });
     if (in_bursts * shorter > std::ssize(stamps_ns)) {
         return mean_hz;
     }
@@ -74,20 +76,19 @@ void JointFit::take(const hal::JointValue& value) {
     constexpr double fastest = 60; ///< rad/s
     constexpr double least_jump_rad = 0.1;
     const std::int64_t last_ns = position_ns.empty() ? 0 : position_ns.back();
-    const double step_s = 1e-9 * static_cast<double>(value.stamp_ns - last_ns);
+    const double step_s = seconds_of(value.stamp_ns - last_ns);
     const double step_rad = std::abs(value.position_rad - last_rad);
-    jumps += positions > 0 && step_rad > least_jump_rad && step_rad > fastest * step_s ? 1 : 0;
+    jumps += !position_ns.empty() && step_rad > least_jump_rad && step_rad > fastest * step_s ? 1 : 0;
     at_end += value.position_reason == hal::Reason::position_out_of_range ? 1 : 0;
     position_ns.push_back(value.stamp_ns);
     last_rad = value.position_rad;
     lowest_rad = std::min(lowest_rad, last_rad);
     highest_rad = std::max(highest_rad, last_rad);
-    ++positions;
 }
 
 bool CodecFit::fits() const noexcept {
     constexpr std::uint64_t most_bad = 10; ///< the largest share of bad frames is 1 / most_bad
-    const std::uint64_t positions = joint[0].positions + joint[1].positions;
+    const std::uint64_t positions = joint[0].position_ns.size() + joint[1].position_ns.size();
     const std::uint64_t jumps = joint[0].jumps + joint[1].jumps;
     const std::uint64_t at_end = joint[0].at_end + joint[1].at_end;
     return positions >= frames_to_recognise && 2 * at_end < positions && most_bad * rejected <= values &&

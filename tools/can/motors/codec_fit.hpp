@@ -6,12 +6,9 @@
 #include "tools/can/families/recognition.hpp"
 #include "tools/can/motors/velocity_check.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -27,7 +24,6 @@ double usual_rate_hz(std::span<const std::int64_t> stamps_ns);
 /// Fit of a codec to the frames of a bus, for one joint.
 struct JointFit {
     VelocityCheck velocity;
-    std::uint64_t positions = 0;
     std::uint64_t jumps = 0;  ///< between consecutive positions, faster than any joint
     std::uint64_t at_end = 0; ///< positions at an end of their code
     std::uint64_t efforts = 0;
@@ -80,31 +76,16 @@ std::uint64_t add_commands(FrameSpan frames, const Codec& codec, std::set<BusStr
     return commands;
 }
 
-/// Returns the frames that none of the `answering` motors sent, if answers look like commands to a motor with
-/// the number of the host (`Codec::answering_motor`); otherwise all frames.
-template <class Codec>
-std::vector<hal::Frame> without_answers(FrameSpan frames, const std::set<unsigned>& answering) {
-    std::vector<hal::Frame> others(frames.begin(), frames.end());
-    if constexpr (requires(const hal::Frame& frame) { Codec::answering_motor(frame); }) {
-        std::erase_if(others, [&](const hal::Frame& frame) {
-            const std::optional<unsigned> sender = Codec::answering_motor(frame);
-            return sender && answering.contains(*sender);
-        });
-    }
-    return others;
-}
-
 /// Returns the motors of `first` … `last` that are commanded or polled, but are not among `answering`.
 /// `codec_of(motor)`: a codec with `command`.
 template <class CodecOf>
 std::vector<SilentMotor> silent_motors(FrameSpan frames, unsigned first, unsigned last,
                                        const std::set<unsigned>& answering, CodecOf codec_of) {
-    const std::vector<hal::Frame> asking = without_answers<decltype(codec_of(first))>(frames, answering);
     std::vector<SilentMotor> silent;
     for (unsigned motor = first; motor <= last; ++motor) {
         SilentMotor asked{.motor = motor};
         if (!answering.contains(motor) &&
-            add_commands(asking, codec_of(motor), asked.commands) >= frames_to_recognise) {
+            add_commands(frames, codec_of(motor), asked.commands) >= frames_to_recognise) {
             silent.push_back(std::move(asked));
         }
     }

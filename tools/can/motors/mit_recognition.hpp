@@ -6,11 +6,13 @@
 #include "tools/can/families/motor_type.hpp"
 #include "tools/can/motors/codec_fit.hpp"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -83,7 +85,7 @@ std::vector<MitCandidate> mit_groups(FrameSpan frames, Plausible plausible) {
     for (auto& [key, candidate] : found) {
         candidate.of_id = all[candidate.feedback_id];
         candidate.plausibility /= static_cast<double>(candidate.frames);
-        groups.push_back(candidate);
+        groups.push_back(std::move(candidate));
     }
     return groups;
 }
@@ -109,7 +111,7 @@ std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, 
                                                            .shared_feedback_id = true}),
                                   frames);
         if (candidate.fit.fits() && !candidate.fit.joint[0].velocity.is_unrelated()) {
-            candidates.push_back(candidate);
+            candidates.push_back(std::move(candidate));
         }
     }
     drop_selections(candidates);

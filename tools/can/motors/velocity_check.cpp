@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/motors/velocity_check.hpp"
 
+#include "dfdyn/hal/motion/encoder_reading.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +29,7 @@ void VelocityCheck::take(const hal::JointValue& value) noexcept {
     if (value.position_reason == hal::Reason::waiting_for_position) {
         return; // no position in this frame
     }
-    const double step_s = 1e-9 * static_cast<double>(value.stamp_ns - position_ns_);
+    const double step_s = hal::seconds_between(position_ns_, value.stamp_ns);
     const bool fresh = has_velocity_ && value.stamp_ns - velocity_ns_ < std::int64_t{100'000'000};
     if (value.position_reason != hal::Reason::ok || !fresh) {
         has_position_ = false;

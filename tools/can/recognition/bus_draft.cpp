@@ -67,11 +67,11 @@ void set_rates(std::span<const RecognisedBoard> boards, nlohmann::json& draft,
 
 } // namespace
 
-nlohmann::json draft_of(RecognisedFamily& family, std::span<const hal::Frame> frames) {
-    Recognition& recognition = family.recognition;
+nlohmann::json draft_of(RecognisedFamily& known, std::span<const hal::Frame> frames) {
+    Recognition& recognition = known.recognition;
     const std::span<const RecognisedBoard> boards = boards_of_draft(recognition.boards, recognition.unsure);
     nlohmann::json joints = recognition.fields;
-    joints["family"] = family.name;
+    joints["family"] = known.family->name;
     int joint = 0;
     for (const RecognisedBoard& board : boards) {
         nlohmann::json entry = board.entry;

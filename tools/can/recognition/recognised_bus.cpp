@@ -9,6 +9,8 @@
 #include "tools/can/recognition/bus_draft.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <map>
 
 namespace dfdyn::tools {
 
@@ -64,25 +66,25 @@ std::vector<RecognisedFamily> possible_families(std::span<const hal::Frame> fram
         if (family.recognise != nullptr) {
             Recognition recognition = family.recognise(frames);
             if (!recognition.boards.empty()) {
-                all.push_back({family.name, std::move(recognition), family.no_draft, family.stream_id});
+                all.push_back({&family, std::move(recognition)});
             }
         }
     }
     std::ranges::stable_sort(all, std::ranges::greater(),
-                             [](const RecognisedFamily& family) { return family.recognition.score; });
+                             [](const RecognisedFamily& known) { return known.recognition.score; });
     return all;
 }
 
 /// Removes the silent motors whose commands are frames of the boards of other families.
 void drop_explained_motors(std::vector<RecognisedFamily>& families) {
-    for (RecognisedFamily& family : families) {
+    for (RecognisedFamily& known : families) {
         const auto explained = [&](const BusStreamKey& command) {
             return std::ranges::any_of(families, [&](const RecognisedFamily& other) {
-                return &other != &family && (other.recognition.identifiers.contains(command) ||
-                                             other.recognition.reserved.contains(command));
+                return &other != &known && (other.recognition.identifiers.contains(command) ||
+                                            other.recognition.reserved.contains(command));
             });
         };
-        std::erase_if(family.recognition.silent, [&](const SilentMotor& motor) {
+        std::erase_if(known.recognition.silent, [&](const SilentMotor& motor) {
             return std::ranges::all_of(motor.commands, explained);
         });
     }
@@ -92,15 +94,15 @@ void drop_explained_motors(std::vector<RecognisedFamily>& families) {
 std::vector<RecognisedFamily> recognise_families(std::span<const hal::Frame> frames) {
     constexpr double as_good = 0.98;
     std::vector<RecognisedFamily> chosen;
-    for (RecognisedFamily& family : possible_families(frames)) {
+    for (RecognisedFamily& known : possible_families(frames)) {
         const auto better = std::ranges::find_if(chosen, [&](const RecognisedFamily& other) {
-            return overlap(other.recognition, family.recognition);
+            return overlap(other.recognition, known.recognition);
         });
         if (better == chosen.end()) {
-            chosen.push_back(std::move(family));
-        } else if (family.recognition.score >= as_good * better->recognition.score) {
+            chosen.push_back(std::move(known));
+        } else if (known.recognition.score >= as_good * better->recognition.score) {
             better->recognition.unsure.push_back("the family: its frames may also be those of " +
-                                                 std::string(family.name));
+                                                 std::string(known.family->name));
         }
     }
     drop_explained_motors(chosen);
@@ -108,10 +110,11 @@ std::vector<RecognisedFamily> recognise_families(std::span<const hal::Frame> fra
 }
 
 /// Returns true for rules that require a description by a person: senders and their rates.
-bool judges_description(const BusFinding& finding, const BusCheck& check) {
-    const std::vector<BusFinding> source = source_findings(check);
+/// `of_sources`: all findings about senders.
+bool judges_description(const BusFinding& finding, std::span<const BusFinding> of_sources) {
     return finding.rule == "unknown_traffic" || finding.rule == "overload" ||
-           std::ranges::any_of(source, [&](const BusFinding& other) { return other.rule == finding.rule; });
+           std::ranges::any_of(of_sources,
+                               [&](const BusFinding& other) { return other.rule == finding.rule; });
 }
 
 void check_draft(const BusDescription& description, std::span<const hal::Frame> frames,
@@ -125,8 +128,9 @@ void check_draft(const BusDescription& description, std::span<const hal::Frame> 
         check.take(bus, room);
     }
     check.finish();
+    const std::vector<BusFinding> of_sources = source_findings(check);
     for (BusFinding& finding : bus_findings(check)) {
-        if (!judges_description(finding, check)) {
+        if (!judges_description(finding, of_sources)) {
             result.findings.push_back(std::move(finding));
         }
     }
@@ -141,8 +145,8 @@ void report_silent_motors(RecognisedBus& result) {
     for (const RecognisedFamily& known : result.families) {
         for (const SilentMotor& silent : known.recognition.silent) {
             result.findings.push_back({"silent_motor",
-                                       std::string(known.name) + " motor " + std::to_string(silent.motor) +
-                                           " is commanded and never answers",
+                                       std::string(known.family->name) + " motor " +
+                                           std::to_string(silent.motor) + " is commanded and never answers",
                                        "commands to it, and no frame of it",
                                        "read its state with the maker's own program",
                                        "Check the motor's power, cable and number. It is not a joint at 0."});
@@ -153,14 +157,14 @@ void report_silent_motors(RecognisedBus& result) {
 /// Makes a draft of the first family with efforts, and checks it.
 void make_draft(std::span<const hal::Frame> frames, RecognisedBus& result) {
     std::string without_efforts;
-    for (RecognisedFamily& family : result.families) {
-        if (family.recognition.quantity.empty()) {
-            without_efforts += (without_efforts.empty() ? "" : "; ") + std::string(family.name) + ": " +
-                               std::string(family.no_draft);
+    for (RecognisedFamily& known : result.families) {
+        if (known.recognition.quantity.empty()) {
+            without_efforts += (without_efforts.empty() ? "" : "; ") + std::string(known.family->name) +
+                               ": " + std::string(known.family->no_draft);
             continue;
         }
         try {
-            nlohmann::json draft = draft_of(family, frames);
+            nlohmann::json draft = draft_of(known, frames);
             check_draft(parse_bus_description(draft, "the draft"), frames, result);
             result.draft = std::move(draft);
             result.draft_error.clear();
@@ -174,31 +178,40 @@ void make_draft(std::span<const hal::Frame> frames, RecognisedBus& result) {
     }
 }
 
-/// Returns the identifier `key` without the state of its sender.
-std::uint32_t stateless_id(const RecognisedFamily& family, const BusStreamKey& key) {
+/// Returns the identifier `key` without the state of its sender. Requires that the family has identifiers
+/// with a state.
+BusStreamKey stateless_key(const JointFamily& family, const BusStreamKey& key) {
     hal::Frame frame = hal::make_frame(key.second, 8);
     frame.extended = key.first;
-    return family.stream_id(frame);
+    return {key.first, family.stream_id(frame)};
 }
 
+/// The identifiers that differ only by the state of their sender.
+struct SenderStates {
+    int identifiers = 0;
+    std::int64_t last_ns = std::numeric_limits<std::int64_t>::min(); ///< stamp of the last frame of all
+};
+
 /// Removes the findings about identifiers that end or pause because the state in them changed.
-void drop_changes_of_state(const RecognisedFamily& family, const BusStreams& streams,
+void drop_changes_of_state(const JointFamily& family, const BusStreams& streams,
                            std::vector<BusFinding>& findings) {
+    std::map<BusStreamKey, SenderStates> senders;
     for (const auto& [key, stream] : streams) {
-        const std::uint32_t id = stateless_id(family, key);
-        bool others = false;
-        bool later = false;
-        for (const auto& [other, state] : streams) {
-            if (other != key && other.first == key.first && stateless_id(family, other) == id) {
-                others = true;
-                later = later || state.last_ns > stream.last_ns;
-            }
+        SenderStates& states = senders[stateless_key(family, key)];
+        ++states.identifiers;
+        states.last_ns = std::max(states.last_ns, stream.last_ns);
+    }
+    for (const auto& [key, stream] : streams) {
+        const SenderStates& states = senders.at(stateless_key(family, key));
+        if (states.identifiers == 1) {
+            continue;
         }
+        const bool later = states.last_ns > stream.last_ns;
         const std::string subject = id_text(key) + " ";
         std::erase_if(findings, [&](const BusFinding& finding) {
             return finding.what.starts_with(subject) &&
-                   ((later && finding.rule == "source_stopped") ||
-                    (others && (finding.rule == "gaps" || finding.rule == "lost_frames")));
+                   ((later && finding.rule == "source_stopped") || finding.rule == "gaps" ||
+                    finding.rule == "lost_frames");
         });
     }
 }
@@ -230,9 +243,9 @@ RecognisedBus recognise_bus(std::span<const hal::Frame> frames) {
 }
 
 void add_findings(const RecognisedBus& bus, const BusCheck& check, std::vector<BusFinding>& findings) {
-    for (const RecognisedFamily& family : bus.families) {
-        if (family.stream_id != nullptr) {
-            drop_changes_of_state(family, check.streams(), findings);
+    for (const RecognisedFamily& known : bus.families) {
+        if (known.family->stream_id != nullptr) {
+            drop_changes_of_state(*known.family, check.streams(), findings);
         }
     }
     for (const BusFinding& finding : bus.findings) {
@@ -247,15 +260,16 @@ void add_findings(const RecognisedBus& bus, const BusCheck& check, std::vector<B
 nlohmann::ordered_json recognised_json(const RecognisedBus& bus) {
     nlohmann::ordered_json families = nlohmann::ordered_json::array();
     nlohmann::ordered_json recognised = nlohmann::ordered_json::array();
-    for (const RecognisedFamily& family : bus.families) {
-        families.push_back(family.name);
+    for (const RecognisedFamily& known : bus.families) {
+        families.push_back(known.family->name);
         nlohmann::ordered_json boards = nlohmann::ordered_json::array();
-        for (const RecognisedBoard& board : family.recognition.boards) {
+        for (const RecognisedBoard& board : known.recognition.boards) {
             boards.push_back(
                 {{"name", board.name}, {"positions_hz", board.rate_hz}, {"measured", board.measured}});
         }
-        recognised.push_back(
-            {{"family", family.name}, {"boards", std::move(boards)}, {"unsure", family.recognition.unsure}});
+        recognised.push_back({{"family", known.family->name},
+                              {"boards", std::move(boards)},
+                              {"unsure", known.recognition.unsure}});
     }
     nlohmann::ordered_json json{{"families", std::move(families)},
                                 {"recognised_in_s", bus.duration_s},
@@ -270,13 +284,13 @@ nlohmann::ordered_json recognised_json(const RecognisedBus& bus) {
 
 void print_recognised_bus(std::ostream& out, const RecognisedBus& bus) {
     out << "\nrecognised in " << rounded_text(bus.duration_s) << " s:\n";
-    for (const RecognisedFamily& family : bus.families) {
-        out << "  " << family.name << '\n';
-        for (const RecognisedBoard& board : family.recognition.boards) {
+    for (const RecognisedFamily& known : bus.families) {
+        out << "  " << known.family->name << '\n';
+        for (const RecognisedBoard& board : known.recognition.boards) {
             out << "    " << board.name << ": " << rounded_text(board.rate_hz) << " positions/s"
                 << (board.measured.empty() ? "" : "; ") << board.measured << '\n';
         }
-        for (const std::string& unsure : family.recognition.unsure) {
+        for (const std::string& unsure : known.recognition.unsure) {
             out << "    unsure: " << unsure << '\n';
         }
         out << "    unsure: order, directions, zeros and encoders of the joints\n";

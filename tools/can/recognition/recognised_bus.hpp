@@ -22,7 +22,7 @@ namespace dfdyn::tools {
 class TrafficTime {
   public:
     void take(std::int64_t stamp_ns) noexcept;
-    double seconds() const noexcept { return 1e-9 * static_cast<double>(sum_ns_); }
+    double seconds() const noexcept { return seconds_of(sum_ns_); }
 
   private:
     std::optional<std::int64_t> latest_ns_;
@@ -69,10 +69,8 @@ class RecordedBus {
 
 /// A recognised family.
 struct RecognisedFamily {
-    std::string_view name;
+    const JointFamily* family = nullptr; ///< its entry in the catalogue
     Recognition recognition;
-    std::string_view no_draft = {};                                ///< JointFamily::no_draft
-    std::uint32_t (*stream_id)(const hal::Frame& frame) = nullptr; ///< JointFamily::stream_id
 };
 
 /// Result of the recognition of a bus without a description.

@@ -17,7 +17,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-LagSpacing spacing(const ClockOptions& options, bool contiguous, double period_s) {
+LagSpacing spacing(const ClockOptions& options, int most_lags, double period_s) {
     if (options.lags) {
         return {*options.lags, options.every.value_or(1)};
     }
@@ -31,7 +31,7 @@ LagSpacing spacing(const ClockOptions& options, bool contiguous, double period_s
         const double lags = std::round(window_s / (period_s * *options.every));
         return {std::max(least_window_lags, static_cast<int>(lags)), *options.every};
     }
-    return spacing_of(window_s, period_s, contiguous ? largest_lag_count : most_spaced_lags);
+    return spacing_of(window_s, period_s, most_lags);
 }
 
 /// Throws InputError if the learner has fewer samples in memory than it has weights, those of the smallest
@@ -86,7 +86,7 @@ void ClockOptions::add_to(CLI::App& command) {
 }
 
 void ClockOptions::apply(TrainingOptions& training, double period_s, bool free_features) const {
-    const LagSpacing chosen = spacing(*this, needs_contiguous_lags(training), period_s);
+    const LagSpacing chosen = spacing(*this, most_window_lags(training), period_s);
     training.lags = chosen.lags;
     training.every = chosen.every;
     if (forgetting_factor) {
@@ -101,8 +101,8 @@ std::string describe_clock(const TrainingOptions& training, double period_s) {
     constexpr double same_memory = 0.01;
     const double wanted = training.forgetting_factor;
     const double stored = stored_forgetting_factor(wanted);
-    const double wanted_s = wanted < 1 ? memory_of(wanted, period_s) : 0;
-    const double stored_s = stored < 1 ? memory_of(stored, period_s) : 0;
+    const double wanted_s = memory_of(wanted, period_s);
+    const double stored_s = memory_of(stored, period_s);
     std::ostringstream text;
     text << std::setprecision(4) << "sample period " << period_s << " s, window "
          << period_s * training.lags * training.every << " s (" << training.lags << " lags, "

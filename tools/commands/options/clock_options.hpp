@@ -32,9 +32,9 @@ struct ClockOptions {
     void apply(TrainingOptions& training, double period_s, bool free_features = false) const;
 };
 
-/// Returns text like "sample period 0.001 s, window 0.08 s (20 lags, 4 samples apart), memory unlimited". The
-/// memory is that of the model, if its forgetting factor in single precision has another one by more than 1
-/// %.
+/// Returns text like "sample period 0.001 s, window 0.08 s (20 lags, 4 samples apart), memory unlimited". If
+/// single precision changes the memory by more than a hundredth, the text has that of the model and the given
+/// one.
 std::string describe_clock(const TrainingOptions& training, double period_s);
 
 } // namespace dfdyn::tools

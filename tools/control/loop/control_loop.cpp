@@ -3,14 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace dfdyn::tools {
 
 namespace {
-
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// A position with a value that is not finite counts as missing.
 bool has_position(const LoopInput& input) { return input.position != nullptr && input.position->allFinite(); }
@@ -41,12 +38,12 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
       clock_(std::llround(config_.period_s * 1e9)), watch_(config_.safe_stop, config_.period_s),
       safe_stop_(config_.safe_stop), task_(std::move(task), config_.period_s),
       observer_(make_observer(config_)), zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_),
-      command_(zero_), start_offset_(zero_), excess_(zero_), feedback_torque_(zero_),
+      command_(zero_), excess_(zero_), feedback_torque_(zero_),
       missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()), unsettled_(missing_.size()) {
     early_.position = zero_;
     early_.missing = missing_;
-    references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
-    references_.front() = task_.next();
+    references_.assign(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age,
+                       task_.next());
     commands_.resize(references_.size());
 }
 
@@ -120,11 +117,8 @@ void ControlLoop::begin() {
     const JointVector offset = -error_;
     const auto pull = config_.gains.position.cwiseProduct(offset).cwiseAbs().array();
     if ((pull > recovery_step * config_.torque_limit.array()).any()) {
-        references_.front().position += offset;
-        feedback_.move_reference(offset);
-        watch_.move_reference(offset);
+        move_reference(offset);
         task_.lead_in(offset, config_.safe_stop.speed_limit);
-        start_offset_ = offset;
         error_ = zero_;
     }
     start_ns_ = clock_.expected_ns();
@@ -161,7 +155,7 @@ void ControlLoop::follow() {
 
 JointVector ControlLoop::of_regular_joints(JointVector torque) const {
     for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
-        torque[joint] = feedback_.regular(joint) ? torque[joint] : not_known;
+        torque[joint] = feedback_.regular(joint) ? torque[joint] : unknown_torque;
     }
     return torque;
 }
@@ -169,7 +163,7 @@ JointVector ControlLoop::of_regular_joints(JointVector torque) const {
 JointVector ControlLoop::required_torque() const {
     JointVector torque = of_regular_joints(command_);
     for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
-        torque[joint] = excess_[joint] == 0 ? torque[joint] : not_known;
+        torque[joint] = excess_[joint] == 0 ? torque[joint] : unknown_torque;
     }
     return torque;
 }
@@ -217,13 +211,16 @@ void ControlLoop::yield(bool contact) {
     yields_ = contact || (yields_ && calm_for_s_ < calm_s);
 }
 
-void ControlLoop::rest_here() {
-    const JointVector distance = feedback_.position() - reference().position;
+void ControlLoop::move_reference(const JointVector& distance) {
     for (Reference& reference : references_) { // the whole ring: the readings of a delay belong to it, too
         reference.position += distance;
     }
     feedback_.move_reference(distance);
     watch_.move_reference(distance);
+}
+
+void ControlLoop::rest_here() {
+    move_reference(feedback_.position() - reference().position);
     rest_ = {reference().position, zero_, zero_};
 }
 

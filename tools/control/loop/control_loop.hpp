@@ -147,7 +147,7 @@ class ControlLoop {
     /// Share of each joint's observer bandwidth that vibrations left, 1/256 … 1.
     JointVector bandwidth_share() const { return joint_vector(observer_.share()); }
     /// Position minus reference where the loop began with a lead-in, rad (m); zeros without one.
-    const JointVector& start_offset() const noexcept { return start_offset_; }
+    const JointVector& start_offset() const noexcept { return task_.lead_in_offset(); }
     /// Duration of the lead-in, s; 0: none.
     double lead_in_s() const noexcept { return task_.lead_in_s(); }
     const LoopCounters& counters() const noexcept { return counters_; }
@@ -186,6 +186,8 @@ class ControlLoop {
     void meet_contact();
     /// Begins to yield at a contact, and stops yielding after it.
     void yield(bool contact);
+    /// Moves the references so far by `distance`, rad.
+    void move_reference(const JointVector& distance);
     /// Holds the arm at its measured position from now on.
     void rest_here();
     /// Returns the torque during a contact.
@@ -240,7 +242,6 @@ class ControlLoop {
     std::int64_t start_ns_ = 0;         ///< measurement time of its first tick, on the loop's grid
     Observer observer_;
     JointVector zero_, error_, command_;
-    JointVector start_offset_;
     JointVector excess_;          ///< part of the last command that the limits removed
     JointVector feedback_torque_; ///< part of the command without feed-forward
     int recovery_ = 0;            ///< remaining regular ticks with limited feedback

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace dfdyn::tools {
 
@@ -86,8 +85,7 @@ JointVector ControlLoop::braking_feedback() const {
                               (braking_.position[joint] - feedback_.position()[joint]);
         const double damping = std::max(0.0, config_.gains.velocity[joint]) *
                                (braking_.velocity[joint] - feedback_.velocity()[joint]);
-        torque[joint] = damped(joint) ? std::clamp(spring, -most, most) + damping
-                                      : std::numeric_limits<double>::quiet_NaN();
+        torque[joint] = damped(joint) ? std::clamp(spring, -most, most) + damping : unknown_torque;
     }
     return torque;
 }

@@ -8,14 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 namespace dfdyn::tools {
 
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns the model with a shorter patience, so that a changed arm is learned quickly. The share of the
 /// learned torque is evaluated every second, so learning a contact of half a second has little influence.
@@ -231,7 +228,7 @@ bool LearnedFeedForward::take_prediction(const Learner& learner, double* torque)
     const bool known = learner.follows && learner.follower->predict_with(learner.weights, prediction_) &&
                        std::ranges::all_of(prediction_, [](float value) { return std::isfinite(value); });
     std::ranges::transform(prediction_, torque,
-                           [=](float value) { return known ? static_cast<double>(value) : unknown; });
+                           [=](float value) { return known ? static_cast<double>(value) : unknown_torque; });
     return known;
 }
 

@@ -9,12 +9,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace dfdyn::tools {
+
+/// Torque of a joint that dfdyn::FeedForward and dfdyn::DisturbanceObserver are to leave out.
+inline constexpr double unknown_torque = std::numeric_limits<double>::quiet_NaN();
 
 /// Statistics of the learner.
 struct LearningCounters {

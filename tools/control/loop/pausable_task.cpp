@@ -7,7 +7,8 @@
 namespace dfdyn::tools {
 
 PausableTask::PausableTask(std::unique_ptr<Task> task, double period_s)
-    : task_(std::move(task)), period_s_(period_s), before_(task_->next()), after_(task_->next()) {}
+    : task_(std::move(task)), period_s_(period_s), before_(task_->next()), after_(task_->next()),
+      offset_(JointVector::Zero(before_.position.size())) {}
 
 void PausableTask::lead_in(const JointVector& offset, const JointVector& speed_limit) {
     constexpr double peak = 1.875; // of the polynomial's speed, relative to its mean

@@ -29,6 +29,8 @@ class PausableTask final : public Task {
     /// Begins a lead-in: the last reference was this far (rad, m) beside the path. `speed_limit`: rad/s, m/s
     /// per joint; empty: none.
     void lead_in(const JointVector& offset, const JointVector& speed_limit);
+    /// Returns the offset at the begin of the lead-in, rad (m); zeros without one.
+    const JointVector& lead_in_offset() const noexcept { return offset_; }
     /// Returns the duration of the lead-in, s; 0 without one.
     double lead_in_s() const noexcept { return lead_in_s_; }
 
@@ -49,7 +51,7 @@ class PausableTask final : public Task {
     double phase_ = 0;                   ///< between them, 0 … 1
     double rate_ = 1, acceleration_ = 0; ///< of the task's time: s/s, 1/s
     bool pausing_ = false;
-    JointVector offset_;               ///< at the begin of the lead-in; empty: none
+    JointVector offset_;               ///< at the begin of the lead-in
     double lead_in_s_ = 0, led_s_ = 0; ///< duration of the lead-in; time since its begin
 };
 

@@ -166,8 +166,7 @@ PositionFeedback::JointMotion PositionFeedback::believed_motion(Eigen::Index joi
     const auto j = static_cast<std::size_t>(joint);
     const Restart& last = restart_[j];
     const bool reading = settled(joint);
-    const double most = bounds_.speed.size() > 0 ? bounds_.speed[joint] : std::numeric_limits<double>::max();
-    const double velocity = std::clamp(reading ? velocity_[joint] : last.velocity, -most, most);
+    const double velocity = within_speed(joint, reading ? velocity_[joint] : last.velocity);
     const std::int64_t tick = reading ? newest_tick_[j] : last.tick;
     const double time_s = period_s_ * static_cast<double>(tick_ - tick);
     return {(reading ? newest_[joint] : last.position) + velocity * time_s, velocity};
@@ -203,8 +202,12 @@ double PositionFeedback::rate_at(Eigen::Index joint, std::int64_t tick) const no
 }
 
 double PositionFeedback::bounded_rate(Eigen::Index joint) const noexcept {
-    const double rate = reading_rate_[joint];
-    return bounds_.speed.size() > 0 ? std::clamp(rate, -bounds_.speed[joint], bounds_.speed[joint]) : rate;
+    return within_speed(joint, reading_rate_[joint]);
+}
+
+double PositionFeedback::within_speed(Eigen::Index joint, double velocity) const noexcept {
+    const double most = bounds_.speed.size() > 0 ? bounds_.speed[joint] : std::numeric_limits<double>::max();
+    return std::clamp(velocity, -most, most);
 }
 
 JointVector PositionFeedback::error() const {

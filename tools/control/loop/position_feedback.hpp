@@ -148,6 +148,8 @@ class PositionFeedback {
     double rate_at(Eigen::Index joint, std::int64_t tick) const noexcept;
     /// Error rate at the last reading, limited to the joint's speed.
     double bounded_rate(Eigen::Index joint) const noexcept;
+    /// Returns `velocity`, rad/s, limited to the joint's speed.
+    double within_speed(Eigen::Index joint, double velocity) const noexcept;
 
     FeedbackGains gains_;
     DerivativeModel filter_;

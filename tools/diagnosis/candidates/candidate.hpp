@@ -80,9 +80,12 @@ struct Candidate {
     std::string effect, where;
     std::vector<std::string> inputs; ///< inputs of an unnamed candidate
     std::string detail;              ///< distinguishes candidates of the same effect and place: axes, times
-    std::string span;        ///< candidates with the same span describe the same set of columns; empty: none
-    std::string family;      ///< at most one candidate of a family is chosen; empty: no family
-    double prior_trials = 1; ///< number of alternatives from which it was selected beforehand
+    std::string span;   ///< candidates with the same span describe the same set of columns; empty: none
+    std::string family; ///< at most one candidate of a family is chosen; empty: no family
+    /// Multiplies the number of its shapes in the prior: the number of alternatives from which it was
+    /// selected beforehand. For links and payloads it contains the number of shapes that exist over those
+    /// that the motion determines, so that missing ones do not change the prior of the others.
+    double prior_trials = 1;
     /// minimum log-evidence that it must exceed, from the other candidates of its kind
     double evidence_offset = 0;
     bool event = false; ///< occurs once: other times carry no information on it

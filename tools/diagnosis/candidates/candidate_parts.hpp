@@ -5,16 +5,13 @@
 #include "tools/diagnosis/signals/signals.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
-
-inline std::string numbered(const char* what, std::size_t index_from_0) {
-    std::string result(what);
-    return result += std::to_string(index_from_0 + 1);
-}
 
 /// Returns `size`, or a minimum step if it is smaller. Dividing an effect by this step yields its slope.
 inline double at_least_small(double size) {

@@ -5,7 +5,9 @@
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/signals/smooth_functions.hpp"
 
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -21,8 +23,7 @@ struct JointInputs {
     std::vector<Eigen::VectorXd> of_position;
 
     JointInputs(const DiagnosisSignals& signals, Eigen::Index joint)
-        : position_name(numbered("q", static_cast<std::size_t>(joint))),
-          velocity_name(numbered("qd", static_cast<std::size_t>(joint))),
+        : position_name("q" + std::to_string(joint + 1)), velocity_name("qd" + std::to_string(joint + 1)),
           velocity(signals.measured.motion.velocity.col(joint)), direction(signals.direction(joint)),
           of_position(harmonics(signals.measured.motion.position.col(joint), 5)) {}
 };

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate.hpp"
 #include "tools/diagnosis/candidates/point_mass.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/extension/extension_parts.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
 

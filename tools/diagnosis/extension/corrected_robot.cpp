@@ -2,14 +2,14 @@
 #include "tools/diagnosis/extension/corrected_robot.hpp"
 
 #include "tools/base/text/number.hpp"
-#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate.hpp"
 #include "tools/model/effects.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -78,14 +78,22 @@ void list_gains(RobotExport& result, const ModelExtension& extension) {
     }
 }
 
-/// Lists the size of gravity where simulators would assume another one: a URDF contains none.
-void list_gravity(RobotExport& result) {
+/// Returns the name of a format as in a sentence: `URDF`.
+std::string title_of(const RobotFormat& format) {
+    std::string title = format.name;
+    std::ranges::transform(title, title.begin(),
+                           [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
+    return title;
+}
+
+/// Lists the size of gravity for a format that contains none, if simulators would assume another one.
+void list_gravity(RobotExport& result, const RobotFormat& format) {
     constexpr double usual = 9.81; // m/s²
     constexpr double noticeable = 0.01;
     const double size = result.robot.gravity.norm();
     if (std::abs(size - usual) > noticeable) {
-        result.left_out.push_back("gravity of " + rounded_text(size) +
-                                  " m/s² in a URDF: simulators use 9.81");
+        result.left_out.push_back("gravity of " + rounded_text(size) + " m/s² in a " + title_of(format) +
+                                  ": simulators use 9.81");
     }
 }
 
@@ -109,8 +117,10 @@ RobotExport corrected_robot(const ModelExtension& extension, const std::vector<s
         }
     }
     list_gains(result, extension);
-    if (std::ranges::find(formats, "urdf") != formats.end()) {
-        list_gravity(result);
+    for (const RobotFormat& format : robot_formats()) {
+        if (!format.holds_gravity && std::ranges::find(formats, format.name) != formats.end()) {
+            list_gravity(result, format);
+        }
     }
     std::vector<std::string>& names = result.left_out; // the axes of a sensor have the same
     names.erase(std::unique(names.begin(), names.end()), names.end());

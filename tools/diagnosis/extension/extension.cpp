@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/extension/extension.hpp"
 
-#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/extension/extension_parts.hpp"
 #include "tools/diagnosis/verdict/textbook.hpp"
@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 namespace dfdyn::tools {
 

@@ -16,8 +16,11 @@ DiagnosisWork diagnose_recordings(const Robot& robot, std::vector<Recording>& re
     std::size_t rounds = 0;
     options.progress = [&](int) { progress.update(++rounds); };
     options.parts = recordings;
-    if (recordings.size() > 1 && refuses_setup(robot, joined_recording(recordings), options)) {
-        return diagnose(robot, joined_recording(recordings), options); // states the reasons
+    if (options.check_setup && recordings.size() > 1) {
+        options.setup = suspicions_of_setup(robot, recordings.front(), options); // of all parts
+        if (any_refusal(*options.setup)) {
+            return diagnose(robot, joined_recording(recordings), options); // states the reasons
+        }
     }
     const SeveralRecordings several = fit_recordings(robot, recordings, options, loads_differ);
     if (loads_differ && !several.fitted()) {
@@ -28,6 +31,7 @@ DiagnosisWork diagnose_recordings(const Robot& robot, std::vector<Recording>& re
     options.torque_gains = several.torque_gains;
     if (loads_differ && !several.answer.loads.empty()) {
         take_loads_off(recordings, robot, several, options.outputs);
+        options.setup.reset(); // it was that of other outputs
     }
     DiagnosisWork work = diagnose(robot, joined_recording(recordings), options);
     name_from_recordings(work, robot, several, recordings);

@@ -12,8 +12,8 @@ namespace dfdyn::tools {
 ///
 /// `loads_differ`: each recording can have a load of its own. The loads that are found in single recordings
 /// are subtracted from the outputs in `recordings`, unless the set-up is refused. Throws InputError if fewer
-/// than two recordings can then be compared, or as `diagnose` does. `options` need no `parts`, `progress` or
-/// `torque_gains`. Cost: that of `diagnose`, `fit_recordings` and `name_from_recordings`.
+/// than two recordings can then be compared, or as `diagnose` does. `options` need no `parts`, `setup`,
+/// `progress` or `torque_gains`. Cost: that of `diagnose`, `fit_recordings` and `name_from_recordings`.
 DiagnosisWork diagnose_recordings(const Robot& robot, std::vector<Recording>& recordings,
                                   DiagnosisOptions options, bool loads_differ);
 

@@ -2,7 +2,7 @@
 #include "tools/diagnosis/recordings/name_bodies.hpp"
 
 #include "tools/base/text/number.hpp"
-#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/diagnosis/recordings/link_finding.hpp"
@@ -15,6 +15,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -113,7 +114,7 @@ class BodyNamer {
             return load.recording && several_.pooled[*load.recording] == number;
         });
         return std::string(" (it begins where a recording does, ") +
-               (subtracted ? "beside the load that is subtracted from this recording)"
+               (subtracted ? "besides the load that is subtracted from this recording)"
                            : "but all recordings together do not support a load of this recording)");
     }
 

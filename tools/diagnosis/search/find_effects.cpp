@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/search/fitted_effects.hpp"
 
-#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate.hpp"
 #include "tools/diagnosis/candidates/dependence_candidates.hpp"
 #include "tools/diagnosis/candidates/weighted_residual.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
@@ -12,10 +12,13 @@
 #include "tools/diagnosis/search/robust_values.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
 

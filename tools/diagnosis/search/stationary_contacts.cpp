@@ -2,18 +2,20 @@
 #include "tools/diagnosis/search/stationary_contacts.hpp"
 
 #include "tools/base/numerics/quantile.hpp"
-#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate.hpp"
 #include "tools/diagnosis/candidates/event_windows.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <numbers>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
 

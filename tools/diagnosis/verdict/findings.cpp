@@ -2,7 +2,7 @@
 #include "tools/diagnosis/verdict/findings.hpp"
 
 #include "tools/base/text/number.hpp"
-#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate.hpp"
 #include "tools/diagnosis/candidates/contact_pulse.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/search/candidate_choice.hpp"
@@ -12,10 +12,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace dfdyn::tools {
 

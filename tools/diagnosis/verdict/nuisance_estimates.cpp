@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/verdict/nuisance_estimates.hpp"
 
-#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate.hpp"
 #include "tools/diagnosis/verdict/found_parameters.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace dfdyn::tools {
 

@@ -6,9 +6,9 @@
 namespace dfdyn::tools {
 
 const std::vector<RobotFormat>& robot_formats() {
-    static const std::vector<RobotFormat> formats{{"urdf", "corrected_robot.urdf", urdf_text},
-                                                  {"mjcf", "corrected_robot.xml", mjcf_text},
-                                                  {"json", "corrected_robot.json", robot_json_text}};
+    static const std::vector<RobotFormat> formats{{"urdf", "corrected_robot.urdf", urdf_text, false},
+                                                  {"mjcf", "corrected_robot.xml", mjcf_text, true},
+                                                  {"json", "corrected_robot.json", robot_json_text, true}};
     return formats;
 }
 

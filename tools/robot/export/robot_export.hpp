@@ -30,6 +30,7 @@ struct RobotFormat {
     /// Returns the file's text: joints, inertias about the centres of mass, limits, and the tip's frame.
     /// Shapes are not part of it.
     std::string (*text)(const RobotExport& exported);
+    bool holds_gravity; ///< false: simulators assume one of 9.81 m/s²
 };
 
 /// URDF. Gravity is along −z of the root link; a fixed joint turns the base if necessary. It has no armature.

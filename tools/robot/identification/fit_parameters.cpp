@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -39,27 +41,40 @@ FitNoise noise_of(const Eigen::MatrixXd& left) {
     return noise;
 }
 
-/// Returns R (b + 1 x b + 1, upper triangular) of the QR decomposition of the rows [columns, error], each row
-/// multiplied by the weight of its output. `independent`: the b columns of the regressor. The rows are added
-/// in blocks, whose weighted copies fit into a cache.
-Eigen::MatrixXd weighted_factor(const FitData& data, const std::vector<Eigen::Index>& independent,
-                                const Eigen::MatrixXd& error, const Eigen::VectorXd& weight) {
+/// Returns R (b + 1 x b + 1, upper triangular) of the QR decomposition of the rows [columns, error] of each
+/// output. `independent`: the b columns of the regressor. The rows are added in blocks, whose copies fit into
+/// a cache.
+std::vector<Eigen::MatrixXd> output_factors(const FitData& data, const std::vector<Eigen::Index>& independent,
+                                            const Eigen::MatrixXd& error) {
     constexpr Eigen::Index block_samples = 500;
     const Eigen::Index outputs = error.cols();
     const auto count = std::ssize(independent);
-    Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(count + 1, count + 1);
+    std::vector<Eigen::MatrixXd> factors(static_cast<std::size_t>(outputs),
+                                         Eigen::MatrixXd::Zero(count + 1, count + 1));
     for (Eigen::Index first = 0; first < error.rows(); first += block_samples) {
         const Eigen::Index samples = std::min(block_samples, error.rows() - first);
-        const Eigen::Index added = samples * outputs;
-        const Eigen::VectorXd weights = weight.replicate(samples, 1);
-        Eigen::MatrixXd rows(count + 1 + added, count + 1);
-        rows.topRows(count + 1) = factor;
-        const Eigen::MatrixXd block = data.regressor(Eigen::seqN(first * outputs, added), independent);
-        rows.bottomLeftCorner(added, count) = weights.asDiagonal() * block;
-        rows.col(count).tail(added) = weights.cwiseProduct(stacked(error.middleRows(first, samples)));
-        factor = triangular_factor(rows);
+        Eigen::MatrixXd rows(count + 1 + samples, count + 1);
+        for (Eigen::Index k = 0; k < outputs; ++k) {
+            Eigen::MatrixXd& factor = factors[static_cast<std::size_t>(k)];
+            rows.topRows(count + 1) = factor;
+            rows.bottomLeftCorner(samples, count) =
+                data.regressor(Eigen::seqN(first * outputs + k, samples, outputs), independent);
+            rows.col(count).tail(samples) = error.col(k).segment(first, samples);
+            factor = triangular_factor(rows);
+        }
     }
-    return factor;
+    return factors;
+}
+
+/// Returns R of the QR decomposition of all outputs' rows, each multiplied by the weight of its output.
+/// `factors`: the output_factors().
+Eigen::MatrixXd weighted_factor(const std::vector<Eigen::MatrixXd>& factors, const Eigen::VectorXd& weight) {
+    const Eigen::Index size = factors.front().rows();
+    Eigen::MatrixXd rows(weight.size() * size, size);
+    for (Eigen::Index k = 0; k < weight.size(); ++k) {
+        rows.middleRows(k * size, size) = weight[k] * factors[static_cast<std::size_t>(k)];
+    }
+    return triangular_factor(rows);
 }
 
 struct Solution {
@@ -67,13 +82,12 @@ struct Solution {
     double condition = 0;
 };
 
-/// Returns the smallest change of the independent parameters that minimizes the residual of `error`, and its
-/// standard deviations.
-Solution solve(const FitData& data, const std::vector<Eigen::Index>& independent,
-               const Eigen::MatrixXd& error, const FitNoise& noise) {
+/// Returns the smallest change of the independent parameters that minimizes the residual of the error, and
+/// its standard deviations. `factors`: the output_factors().
+Solution solve(const std::vector<Eigen::MatrixXd>& factors, const FitNoise& noise) {
     const Eigen::VectorXd weight = noise.deviation.cwiseInverse();
-    const auto count = std::ssize(independent);
-    const Eigen::MatrixXd factor = weighted_factor(data, independent, error, weight);
+    const Eigen::MatrixXd factor = weighted_factor(factors, weight);
+    const Eigen::Index count = factor.cols() - 1;
     Eigen::MatrixXd scaled = factor.topLeftCorner(count, count);
     Eigen::VectorXd length = scaled.colwise().norm();
     length = (length.array() > 0).select(length, 1.0);
@@ -88,8 +102,7 @@ Solution solve(const FitData& data, const std::vector<Eigen::Index>& independent
     // of the correlated rows replaces A, and A⁺ = spread spreadᵀ Aᵀ.
     const Eigen::VectorXd root = weight.cwiseProduct(noise.correlation_length.cwiseSqrt());
     const Eigen::MatrixXd correlated =
-        weighted_factor(data, independent, error, root).topLeftCorner(count, count) *
-        length.cwiseInverse().asDiagonal();
+        weighted_factor(factors, root).topLeftCorner(count, count) * length.cwiseInverse().asDiagonal();
     const Eigen::MatrixXd middle = correlated * spread * spread.transpose();
     solution.deviation = middle.colwise().norm().transpose().cwiseQuotient(length);
     for (Eigen::Index i = 0; i < s.size(); ++i) {
@@ -114,10 +127,11 @@ Eigen::VectorXd changed(const FitData& data, const BaseParameters& base, const E
 BaseFit fit_base_parameters(const FitData& data, const BaseParameters& base) {
     const Eigen::MatrixXd error = errors(data, data.nominal);
     const FitNoise unweighted{Eigen::VectorXd::Ones(error.cols()), Eigen::VectorXd::Ones(error.cols())};
-    const Solution first = solve(data, base.independent, error, unweighted);
+    const std::vector<Eigen::MatrixXd> factors = output_factors(data, base.independent, error);
+    const Solution first = solve(factors, unweighted);
     BaseFit fit;
     fit.noise = noise_of(errors(data, changed(data, base, first.change)));
-    const Solution solution = solve(data, base.independent, error, fit.noise);
+    const Solution solution = solve(factors, fit.noise);
     fit.nominal = base.combination * data.nominal;
     fit.value = fit.nominal + solution.change;
     fit.deviation = solution.deviation;

@@ -22,9 +22,9 @@ class LagSpread {
     LagSpread(const Eigen::MatrixXd& positions, const RowList& rows, int lags);
 
     /// Returns the standard deviation s = |T_i r|. Returns 0 for a constant input:
-    /// - a held joint: its standard deviation is at most a thousandth of the largest joint's, and at most
-    /// 5e-4
-    ///   rad (m) or 30 times its own noise (of third differences, or its smallest step);
+    /// - a held joint: its standard deviation is at most a thousandth of the largest joint's. It is also at
+    ///   most 5e-4 rad (m), or at most 30 times the joint's own noise (of third differences, or its smallest
+    ///   step);
     /// - a combination that differs from 0 by rounding errors only.
     double deviation(Eigen::Index joint, const Eigen::VectorXd& row) const;
 

@@ -25,21 +25,16 @@ RowList training_part(const TrainingSetup& setup) {
     return {rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-/// Returns the result of a least-squares problem of the physics. Throws InputError if there is none.
-template <class Result>
-Result expect_solved(std::optional<Result> result) {
-    if (!result) {
-        throw InputError("training: expected physics that least squares can solve for, found dependent "
-                         "columns");
-    }
-    return *std::move(result);
-}
+constexpr const char* dependent_columns =
+    "training: expected physics that least squares can solve for, found dependent columns";
+constexpr const char* infinite_grid =
+    "training: expected a finite likelihood at the best point of the grid, found none";
 
-/// Returns the likelihood at the best point of a grid. Throws InputError if it is not finite.
+/// Returns the result. Throws InputError with `message` if there is none.
 template <class Result>
-Result expect_finite(std::optional<Result> result) {
+Result expect_result(std::optional<Result> result, const char* message) {
     if (!result) {
-        throw InputError("training: expected a finite likelihood at the best point of the grid, found none");
+        throw InputError(message);
     }
     return *std::move(result);
 }
@@ -54,8 +49,9 @@ PhysicsPart physics_over(const TrainingSetup& setup, const RowList& at) {
     part.motion = setup.motion_start(setup.options.input);
     const MatrixXd columns = setup.physics(setup.options.input, at, part.choice)->evaluate(part.motion);
     const MatrixXd outputs = setup.outputs(at);
-    const VarianceComponents best = expect_solved(
-        best_variances(linear_statistics(outputs, columns, outputs, columns), PhysicsPrior::none));
+    const VarianceComponents best = expect_result(
+        best_variances(linear_statistics(outputs, columns, outputs, columns), PhysicsPrior::none),
+        dependent_columns);
     part.fit.parameters = best.at.parameters;
     return part;
 }
@@ -110,7 +106,7 @@ Fit fit_kernel(const TrainingSetup& setup, const ProgressCallback& progress) {
                         static_cast<Index>(first.size()), counted(progress, kernel_grid_points));
     const HoldOutPoint best = finite_best(points);
     theta.head(kernel_parameters) << std::log(best.noise_ratio), std::log(best.length_scale);
-    const LikelihoodValue value = expect_finite(problem.exact().evaluate(theta));
+    const LikelihoodValue value = expect_result(problem.exact().evaluate(theta), infinite_grid);
     return {problem.split(theta),
             value.output_variance,
             model.offset,
@@ -125,11 +121,14 @@ Fit fit_parametric(const TrainingSetup& setup, const ProgressCallback& progress)
     const MatrixXd columns = setup.physics(setup.options.input, rows, part.choice)->evaluate(part.motion);
     const MatrixXd outputs = setup.outputs(rows);
     std::vector<HoldOutPoint> points =
-        expect_solved(hold_out_physics(columns, outputs, static_cast<Index>(training_part(setup).size()),
-                                       counted(progress, physics_grid_points)));
+        expect_result(hold_out_physics(columns, outputs, static_cast<Index>(training_part(setup).size()),
+                                       counted(progress, physics_grid_points)),
+                      dependent_columns);
     const VectorXd log_prior = VectorXd::Constant(1, std::log(finite_best(points).prior_variance));
-    const VarianceComponents best = expect_finite(best_variances(
-        linear_statistics(outputs, columns, outputs, columns), PhysicsPrior::shared, log_prior));
+    const VarianceComponents best =
+        expect_result(best_variances(linear_statistics(outputs, columns, outputs, columns),
+                                     PhysicsPrior::shared, log_prior),
+                      infinite_grid);
     part.fit = {best.at.parameters, best.prior_variance};
     Fit fit;
     fit.hyper.input = part.motion.head(setup.input(setup.options.input, rows)->bounds().lower.size());

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Buses of motors: what programs send to them is no fault, and a motor without answers is named. The logs are
 // by an independent encoder (tests/data/can/devices).
-#include "tests/tools/can/bus_check_support.hpp"
-#include "tools/can/log/candump_log.hpp"
-#include "tools/can/recognition/recognised_bus.hpp"
+#include "tests/tools/can/recognition/device_logs.hpp"
 
 namespace motor_bus_test {
 
@@ -12,23 +10,11 @@ using Catch::Matchers::ContainsSubstring;
 using dfdyn::tools::BusFinding;
 namespace hal = dfdyn::hal;
 
-const std::string devices = bus_folder + "devices/";
 constexpr std::int64_t us = 1000;
 constexpr std::int64_t ms = 1'000'000;
 
-Frames log_of(const std::string& name) {
-    dfdyn::tools::CandumpLog log(devices + name + ".log");
-    Frames frames;
-    hal::ReplayEntry entry;
-    while (log.next(entry)) {
-        frames.push_back(entry.frame);
-    }
-    log.check();
-    return frames;
-}
-
 BusDescription bus_of(const std::string& name) {
-    return dfdyn::tools::read_bus_description(devices + name + ".json");
+    return dfdyn::tools::read_bus_description(device_folder + name + ".json");
 }
 
 Frame frame_at(std::uint32_t id, std::initializer_list<std::uint8_t> bytes, std::int64_t stamp_ns,
@@ -65,15 +51,6 @@ Frames frames_from(const Frames& log, const std::function<bool(const Frame&)>& i
         }
     }
     return frames;
-}
-
-/// Rules of the findings on a bus without a description.
-Names rules_without_description(const Frames& frames) {
-    Names names;
-    for (const BusFinding& finding : dfdyn::tools::recognise_bus(frames).findings) {
-        names.insert(finding.rule);
-    }
-    return names;
 }
 
 BusFinding only_finding(const BusDescription& bus, const Frames& frames) {
@@ -163,7 +140,7 @@ TEST_CASE("commands to motors that answer on the identifier of their commands ar
     const Frames commands = frames_from(answers, all, [](const Frame& answer) {
         return frame_at(answer.id, {0x7F, 0xFF, 0x7F, 0xF0, 0, 0, 7, 0xFF}, answer.stamp_ns - 100 * us);
     });
-    std::string text = file_content(devices + "cubemars_mit.json");
+    std::string text = file_content(device_folder + "cubemars_mit.json");
     for (const char* const number : {"1", "2"}) {
         const std::string field = std::string("\"motor_id\": ") + number;
         text.replace(text.find(field), field.size(), field + R"(, "feedback_id": "0x)" + number + "\"");

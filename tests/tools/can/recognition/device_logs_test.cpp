@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Logs in tests/data/can/devices, written by device_logs.py from the protocols' documents only.
-#include "dfdyn/hal/replay_bus.hpp"
-#include "tests/tools/can/bus_check_support.hpp"
+#include "tests/tools/can/recognition/device_logs.hpp"
 #include "tools/can/arm/bus_sampler.hpp"
-#include "tools/can/log/candump_log.hpp"
-#include "tools/can/recognition/recognised_bus.hpp"
 
 #include <cmath>
 #include <functional>
@@ -18,7 +15,6 @@ using namespace dfdyn::tests;
 namespace hal = dfdyn::hal;
 using Catch::Matchers::ContainsSubstring;
 
-const std::string folder = bus_folder + "devices/";
 constexpr double pi = std::numbers::pi;
 constexpr double start_s = 1'700'000'000;
 
@@ -46,19 +42,8 @@ constexpr std::array<DeviceLog, 9> logs{{
     {"piper", "piper", 6, 0.001 * pi / 180, 0.001, 0.001},
 }};
 
-Frames frames_of(const std::string& name) {
-    CandumpLog log(folder + name + ".log");
-    Frames frames;
-    hal::ReplayEntry entry;
-    while (log.next(entry)) {
-        frames.push_back(entry.frame);
-    }
-    log.check();
-    return frames;
-}
-
 BusDescription description_of(const DeviceLog& log) {
-    return read_bus_description(folder + log.name + ".json");
+    return read_bus_description(device_folder + log.name + ".json");
 }
 
 const DeviceLog& log_named(std::string_view name) { return *std::ranges::find(logs, name, &DeviceLog::name); }
@@ -105,7 +90,7 @@ Compared compare(std::vector<BusBoard> boards, const Frames& frames, const Devic
 TEST_CASE("logs of motors by an independent encoder are decoded to within a count") {
     for (const DeviceLog& log : logs) {
         CAPTURE(log.name);
-        const Compared compared = compare(description_of(log).boards, frames_of(log.name), log);
+        const Compared compared = compare(description_of(log).boards, log_of(log.name), log);
         CHECK(compared.positions == 300 * log.joints);
         CHECK(compared.velocities == 300 * log.joints);
         CHECK(compared.efforts == 300 * log.joints);
@@ -130,7 +115,7 @@ TEST_CASE("a replay of these logs has a sample per period with the positions at 
                              std::abs(sample.positions()[static_cast<std::size_t>(k - 1)] - angle(k, t)));
             }
         });
-        for (const hal::Frame& frame : frames_of(log.name)) {
+        for (const hal::Frame& frame : log_of(log.name)) {
             sampler.take(frame, hal::BusState::active, {});
         }
         sampler.finish();
@@ -143,10 +128,10 @@ TEST_CASE("a replay of these logs has a sample per period with the positions at 
 TEST_CASE("a bus without a description is recognised and its draft decodes it") {
     for (const DeviceLog& log : logs) {
         CAPTURE(log.name);
-        const Frames frames = frames_of(log.name);
+        const Frames frames = log_of(log.name);
         const RecognisedBus bus = recognise_bus(frames);
         REQUIRE(bus.families.size() == 1);
-        CHECK(bus.families[0].name == log.family);
+        CHECK(bus.families[0].family->name == log.family);
         CAPTURE(bus.draft_error);
         REQUIRE(bus.draft);
         const BusDescription draft = parse_bus_description(*bus.draft, "the draft");
@@ -167,24 +152,15 @@ TEST_CASE("a bus without a description is recognised and its draft decodes it") 
 TEST_CASE("buscheck has no finding on these buses with their descriptions") {
     for (const DeviceLog& log : logs) {
         CAPTURE(log.name);
-        const Names found = rules(description_of(log), frames_of(log.name));
+        const Names found = rules(description_of(log), log_of(log.name));
         const bool two_hosts = std::string(log.name) == "moteus"; // a second host gets replies, too
         CHECK(found == (two_hosts ? Names{"two_hosts"} : Names{}));
     }
 }
 
-/// Returns the rules of the findings on a bus without a description.
-Names rules_without_description(const Frames& frames) {
-    Names names;
-    for (const BusFinding& finding : recognise_bus(frames).findings) {
-        names.insert(finding.rule);
-    }
-    return names;
-}
-
 /// The Damiao log with a change of the feedback of motor 2.
 Frames damiao_with(const std::function<void(Frame&)>& change) {
-    return changed(frames_of("damiao"), [&](Frame& frame) {
+    return changed(log_of("damiao"), [&](Frame& frame) {
         if (frame.id == 0x12 && frame.data[0] == 0x12) {
             change(frame);
         }
@@ -201,7 +177,7 @@ void set_velocity_code(Frame& frame, unsigned code) {
 TEST_CASE("boards with other protocols are recognised, without a draft if it is uncertain") {
     const auto recognised = [](const BusDescription& arm) {
         const RecognisedBus bus = recognise_bus(sound(arm, 1));
-        return bus.families.size() == 1 && bus.families[0].name == arm.joint_family->name
+        return bus.families.size() == 1 && bus.families[0].family->name == arm.joint_family->name
                    ? bus.families[0].recognition.boards.size()
                    : 0;
     };
@@ -213,7 +189,7 @@ TEST_CASE("boards with other protocols are recognised, without a draft if it is 
 }
 
 TEST_CASE("faults of motors are reported on a bus without a description") {
-    CHECK(rules_without_description(frames_of("damiao")) == Names{});
+    CHECK(rules_without_description(log_of("damiao")) == Names{});
     CHECK(rules_without_description(damiao_with([](Frame& frame) {
               set_velocity_code(frame, 4095 - velocity_code(frame)); // the other direction
           })) == Names{"velocity_sign"});
@@ -223,16 +199,15 @@ TEST_CASE("faults of motors are reported on a bus without a description") {
           })).contains("encoder_frozen"));
     CHECK(rules_without_description(damiao_with([](Frame& frame) { frame.data[0] = 0xC2; })) ==
           Names{"device_fault"}); // coil too hot
-    CHECK(rules_without_description(without(frames_of("damiao"), [](const Frame& frame) {
+    CHECK(rules_without_description(without(log_of("damiao"), [](const Frame& frame) {
               return frame.id == 0x12;
           })) == Names{"silent_motor"});
-    CHECK(rules_without_description(without(frames_of("rmd"), [](const Frame& frame) {
-              return frame.id == 0x243;
-          })) == Names{"silent_motor"});
+    CHECK(rules_without_description(without(
+              log_of("rmd"), [](const Frame& frame) { return frame.id == 0x243; })) == Names{"silent_motor"});
 }
 
 TEST_CASE("a few frames like those of another RMD motor do not change the position of the draft") {
-    Frames frames = frames_of("rmd");
+    Frames frames = log_of("rmd");
     for (const std::size_t quarter : {1U, 2U, 3U}) {
         Frame other = hal::make_frame(0x25C, 8); // motor 28, too few answers to recognise it
         other.data[0] = 0x9C;
@@ -247,7 +222,7 @@ TEST_CASE("a few frames like those of another RMD motor do not change the positi
 
 TEST_CASE(
     "a Damiao motor's velocity maximum is measured where libraries disagree and registers are not read") {
-    const Frames unread = without(frames_of("damiao"), [](const Frame& frame) {
+    const Frames unread = without(log_of("damiao"), [](const Frame& frame) {
         return frame.id == 0x7FF || (frame.id > 0x10 && frame.data[0] < 0x10);
     });
     for (const double maximum : {10.0, 8.0}) {
@@ -267,7 +242,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a program that polls a motor by clearing its faults is reported") {
-    Frames frames = frames_of("robstride_mit");
+    Frames frames = log_of("robstride_mit");
     const std::size_t sent = frames.size();
     for (std::size_t i = 0; i < sent; i += 30) {
         Frame clear = hal::make_frame(2, 8);
@@ -283,7 +258,7 @@ TEST_CASE("a program that polls a motor by clearing its faults is reported") {
 }
 
 TEST_CASE("old firmware and the second arm on a bus of Pipers are recognised") {
-    const Frames rpm = changed(frames_of("piper"), [](Frame& frame) {
+    const Frames rpm = changed(log_of("piper"), [](Frame& frame) {
         if (frame.id > 0x250 && frame.id <= 0x256) {
             const double rad_s = 0.001 * hal::load_big<std::int16_t>(frame.data.data());
             hal::store_big(frame.data.data(), static_cast<std::int16_t>(std::lround(rad_s * 30 / pi)));
@@ -293,8 +268,8 @@ TEST_CASE("old firmware and the second arm on a bus of Pipers are recognised") {
     REQUIRE(old.draft);
     CHECK(old.draft->at("joints").at("firmware") == "rpm");
     CHECK(rules(description_of(log_named("piper")), rpm) == Names{"velocity_scale"});
-    Frames two = frames_of("piper");
-    for (Frame frame : frames_of("piper")) {
+    Frames two = log_of("piper");
+    for (Frame frame : log_of("piper")) {
         if (frame.id >= 0x2A1 && frame.id <= 0x2A8) {
             frame.id += 0x10;
             frame.stamp_ns += 50'000;

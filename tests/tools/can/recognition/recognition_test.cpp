@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recognition of devices on buses without a description that are irregular, mixed or incomplete.
+#include "tests/tools/can/recognition/device_logs.hpp"
 #include "tests/tools/can/recognition/made_motors.hpp"
 #include "tools/can/arm/bus_sampler.hpp"
-#include "tools/can/recognition/recognised_bus.hpp"
 
 #include <functional>
 #include <sstream>
@@ -16,8 +16,8 @@ using Catch::Matchers::ContainsSubstring;
 
 std::vector<std::string> families_of(const RecognisedBus& bus) {
     std::vector<std::string> names;
-    for (const RecognisedFamily& family : bus.families) {
-        names.emplace_back(family.name);
+    for (const RecognisedFamily& known : bus.families) {
+        names.emplace_back(known.family->name);
     }
     return names;
 }
@@ -25,14 +25,6 @@ std::vector<std::string> families_of(const RecognisedBus& bus) {
 using Families = std::vector<std::string>;
 
 Families families_of(const made::Log& log) { return families_of(recognise_bus(log.frames())); }
-
-Names findings_of(const RecognisedBus& bus) {
-    Names names;
-    for (const BusFinding& finding : bus.findings) {
-        names.insert(finding.rule);
-    }
-    return names;
-}
 
 std::string printed(const RecognisedBus& bus) {
     std::ostringstream out;
@@ -145,7 +137,7 @@ TEST_CASE("CANopen drives whose TPDO looks like a feedback in MIT mode are not m
 TEST_CASE("commands to recognised motors are not frames of other devices") {
     const RecognisedBus rmd = recognise_bus(made::rmd_with_silent_motor().frames());
     CHECK(families_of(rmd) == Families{"rmd"});
-    CHECK(findings_of(rmd).contains("silent_motor"));
+    CHECK(rules_of(rmd).contains("silent_motor"));
     made::Log damiao;
     made::add_damiao(damiao, 14, 100, 0, 2);
     CHECK(families_of(damiao) == Families{"damiao"});
@@ -192,7 +184,7 @@ TEST_CASE("axes of one family are not silent motors of another") {
     made::add_odrive(log, 2, 5, 100);
     const RecognisedBus bus = recognise_bus(log.frames());
     CHECK(families_of(bus) == Families{"cubemars", "odrive"});
-    CHECK_FALSE(findings_of(bus).contains("silent_motor"));
+    CHECK_FALSE(rules_of(bus).contains("silent_motor"));
     CHECK_THAT(printed(bus), ContainsSubstring("the draft has the joints of cubemars only"));
 }
 

@@ -90,7 +90,7 @@ TEST_CASE("the remark on a subtracted load has three digits of its mass") {
     second.diagnosis.findings = {taken_at_border()};
     name(second, several);
     CHECK_THAT(second.diagnosis.findings.front().evidence,
-               ContainsSubstring("beside the load that is subtracted from this recording"));
+               ContainsSubstring("besides the load that is subtracted from this recording"));
 }
 
 } // namespace name_bodies_test

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace robust_values_test {
 
@@ -55,7 +57,8 @@ struct SwingingJoint {
         FittedEffects result;
         for (const VectorXd& series : effects) {
             const auto number = result.candidates.size();
-            result.candidates.push_back(of_one_column(numbered("effect", number), "joint1", series));
+            result.candidates.push_back(
+                of_one_column("effect" + std::to_string(number + 1), "joint1", series));
             result.problem.candidates.push_back({{{{static_cast<Index>(number)}, is_anything}}});
             result.chosen.push_back({number, 0});
             columns.push_back(

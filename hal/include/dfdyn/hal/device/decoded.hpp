@@ -71,8 +71,6 @@ struct FrameList {
 /// - `decode(frame)`: decodes any frame, including frames of other devices.
 /// - `claims(id)`: returns true if this device, and no other, may send the standard identifier.
 /// - `concerns(frame)`, optional: returns true for all its frames, also those sent to it (see `concerns`).
-/// - `stream_id(frame)`, optional, static: the identifier without bits that change from frame to frame (a
-///   mode), as in the frames of `encode`.
 /// - `encode(values)`: the frames that the device sends for these values, with its quantisation and
 ///   saturation; one value for each of its joints, in its own order. For simulated devices.
 template <class S>
