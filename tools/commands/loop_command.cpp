@@ -46,6 +46,13 @@ void add_model(CLI::App& command, LoopOptions& options) {
             "detected. Not a safety function: docs/guide/contacts.md")
         ->type_name("stop|hold|yield");
     add_contact_rate(command, options.limits.contact_rate_per_hour, "With --on-contact");
+    command
+        .add_option("--contact-calibration", options.limits.contact_calibration_s,
+                    "With --on-contact: measures the limits of contacts during the first S seconds with "
+                    "motion. Nobody may touch the arm then: the limits are ten times the model's. Default: "
+                    "the model's limits from the start")
+        ->check(number_in(30, 3600))
+        ->type_name("S");
 }
 
 /// Adds the options of the loop's limits.

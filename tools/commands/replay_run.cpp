@@ -79,8 +79,9 @@ Replaying make_replaying(const ReplayOptions& options, std::span<const TrainedMo
         replaying.estimator = frozen(std::move(replaying.estimator));
     }
     if (options.contacts.wanted()) {
-        auto watched = with_contacts(std::move(replaying.estimator),
-                                     options.contacts.limits(models.front(), shown(options.models.front())));
+        auto watched =
+            with_contacts(std::move(replaying.estimator),
+                          {options.contacts.limits(models.front(), shown(options.models.front()))});
         replaying.detector = watched.get();
         replaying.estimator = std::move(watched);
     }

@@ -170,9 +170,11 @@ LoopConfig loop_config(const Robot& robot, const Scenario& scenario, const std::
 LearnedFeedForward learned_part(const Robot& robot, const LoopModel& learned, int knot_ticks,
                                 const LoopLimits& limits) {
     const MonitorSetup monitor = monitor_setup(learned.model, &robot, learned.source);
-    std::optional<ContactModel> contact;
+    std::optional<ContactSetup> contact;
     if (limits.on_contact != FindingAction::report) {
-        contact = contact_limits(learned.model, limits.contact_rate_per_hour, learned.source);
+        contact = ContactSetup{contact_limits(learned.model, limits.contact_rate_per_hour, learned.source),
+                               limits.contact_calibration_s,
+                               limits.contact_rate_per_hour.value_or(contact_rate_per_hour)};
     }
     LearnedFeedForward model(learned.model, learned.from_prior, static_cast<int>(robot.joints.size()),
                              knot_ticks, learned.source, &monitor, contact ? &*contact : nullptr);

@@ -33,6 +33,7 @@ struct LoopLimits {
     FindingActions actions{};
     FindingAction on_contact = FindingAction::report;
     std::optional<double> contact_rate_per_hour{}; ///< of false contacts; none: the model's
+    double contact_calibration_s = 0;              ///< see ContactSetup
 };
 
 /// Returns the default limits of a loop with these gains and torque limits:

@@ -40,10 +40,18 @@ PaceOutcome keep_pace(const RealTimeRun& run, const Tick& tick) try {
     throw InputError(error.what());
 }
 
+/// Returns whether the limits of contacts have been measured.
+bool contacts_calibrated(const ControlLoop& loop) {
+    const LearnedFeedForward* const learned = loop.feed_forward().learned();
+    return learned != nullptr && learned->contact_calibration() != nullptr &&
+           learned->contact_calibration()->finished();
+}
+
 } // namespace
 
 PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, LoopLog& log) {
-    bool brakes = false; // requested
+    bool brakes = false;     // requested
+    bool calibrated = false; // the limits of contacts
     return keep_pace(run, [&](hal::SocketCanBus& bus, std::int64_t due_ns, bool missed, bool over) {
         port.receive(bus, due_ns);
         LoopInput input = port.sense(bus.now_ns());
@@ -66,6 +74,10 @@ PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, 
                       << "): holds the arm, requests its brakes; ends "
                       << (loop.ends_itself() ? "when they have had time to close\n"
                                              : "at Ctrl-C, or after a second without positions\n");
+        }
+        if (!calibrated && contacts_calibrated(loop)) {
+            calibrated = true;
+            std::cerr << "loop: contacts: limits measured\n";
         }
         return !loop.done();
     });

@@ -23,6 +23,7 @@
 #include "dfdyn/input/standard.hpp"
 #include "dfdyn/learner/ud_covariance.hpp"
 #include "dfdyn/model.hpp"
+#include "dfdyn/monitor/contact_calibration.hpp"
 #include "dfdyn/monitor/contact_detector.hpp"
 #include "dfdyn/monitor/monitor.hpp"
 #include "dfdyn/physics/effects.hpp"

@@ -92,7 +92,7 @@ namespace {
 std::vector<double> contact_starts(const TrainedModel& model, bool learning, const std::string& name) {
     auto estimator = make_estimator(model, false);
     const auto detector =
-        with_contacts(learning ? std::move(estimator) : frozen(std::move(estimator)), model.contact);
+        with_contacts(learning ? std::move(estimator) : frozen(std::move(estimator)), {model.contact});
     const auto replayed = replay(*detector, std::span(&model, 1), recording(name), 0, [](std::size_t) {});
     std::vector<double> starts;
     for (const DetectedContact& contact : detector->take_contacts()) {

@@ -46,7 +46,7 @@ inline std::vector<double> contact_times(const tools::TrainedModel& model, const
                                          const tools::Recording& recording, bool learning) {
     auto estimator = make_estimator(model, false);
     const auto detector =
-        with_contacts(learning ? std::move(estimator) : frozen(std::move(estimator)), contact);
+        with_contacts(learning ? std::move(estimator) : frozen(std::move(estimator)), {contact});
     const auto replayed = replay(*detector, std::span(&model, 1), recording, 0, [](std::size_t) {});
     std::vector<double> starts;
     for (const tools::DetectedContact& one : detector->take_contacts()) {

@@ -44,7 +44,7 @@ class PredictsZero final : public RuntimeEstimator {
 };
 
 std::unique_ptr<ContactEstimator> detector_of(Reason prediction) {
-    return with_contacts(std::make_unique<PredictsZero>(prediction), {{1, 1, 1}, {0.1, 0.1, 0.1}});
+    return with_contacts(std::make_unique<PredictsZero>(prediction), {{{1, 1, 1}, {0.1, 0.1, 0.1}}});
 }
 
 /// Ticks from `first` to before `last` of a joint that turns at 0.5 rad/s, with a constant output.

@@ -55,7 +55,7 @@ struct Exceeded {
 
 Exceeded exceeded(const TrainedModel& model, const ContactModel& contact, const Recording& recording) {
     Exceeded result;
-    ContactWatch watch(contact);
+    ContactWatch watch({contact});
     bool counted = false;
     std::vector<float> position(2);
     const auto count = [&](const MeasuredSample& sample, const Tick& tick, bool begins) {

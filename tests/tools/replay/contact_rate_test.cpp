@@ -130,7 +130,7 @@ using Counts = std::array<int, rates_per_hour.size()>;
 void add_contacts(const TrainedModel& model, const Recording& recording, Counts& counts) {
     std::vector<std::unique_ptr<ContactWatch>> watches;
     for (const double rate : rates_per_hour) {
-        watches.push_back(std::make_unique<ContactWatch>(contact_at_rate(model.contact, rate)));
+        watches.push_back(std::make_unique<ContactWatch>(ContactSetup{contact_at_rate(model.contact, rate)}));
     }
     const auto estimator = make_estimator(model, false);
     std::vector<float> position(coulomb_nm.size());

@@ -66,7 +66,7 @@ void check_loop_model(const TrainedModel& model, int joints, const std::string& 
 
 LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
                                        const std::string& source, const MonitorSetup* monitor,
-                                       const ContactModel* contact)
+                                       const ContactSetup* contact)
     : sample_period_ns_(std::llround(model.sample_period_s * 1e9)),
       lags_(std::max(model.input.lags, model.physics ? model.physics->motion.lags : 0)) {
     check_loop_model(model, joints, source);

@@ -58,11 +58,11 @@ class LearnedFeedForward {
     static constexpr std::array physics_memories_s{0.53, 8.0};
 
     /// `from_prior`: ignores the initial weights from training. `ticks`: control ticks per sample. `monitor`:
-    /// monitors the learner; null for none. `contact`: limits for the detection of contacts, in which nothing
-    /// is learned; null for none. Throws InputError as `check_loop_model`.
+    /// monitors the learner; null for none. `contact`: for the detection of contacts, in which nothing is
+    /// learned; null for none. Throws InputError as `check_loop_model`.
     LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
                        const std::string& source, const MonitorSetup* monitor = nullptr,
-                       const ContactModel* contact = nullptr);
+                       const ContactSetup* contact = nullptr);
 
     Extent<dynamic> output_count() const noexcept { return {static_cast<int>(prediction_.size())}; }
     /// Returns 1, and one more per learner of the physics alone.
@@ -104,6 +104,10 @@ class LearnedFeedForward {
     /// Returns the joint (from 0) of the present contact; -1: none, or contacts are not detected.
     int contact_joint() const {
         return contacts_ != nullptr && contacts_->detector().contact() ? contacts_->detector().joint() : -1;
+    }
+    /// Returns the calibration of the limits of contacts; null: none.
+    const ContactWatch::Calibration* contact_calibration() const {
+        return contacts_ != nullptr ? contacts_->calibration() : nullptr;
     }
     /// Resets the covariance after a change of the arm: see RuntimeEstimator::relearn.
     void relearn() { learners_.front().estimator->relearn(); }

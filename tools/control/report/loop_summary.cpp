@@ -57,6 +57,36 @@ void print_vibrations(std::ostream& out, const ControlLoop& loop) {
     }
 }
 
+/// Returns the largest factor of each joint on its limits of contacts.
+std::vector<double> contact_factors(const ContactWatch::Calibration& calibration, Eigen::Index joints) {
+    std::vector<double> factors;
+    for (Eigen::Index joint = 0; joint < joints; ++joint) {
+        const auto factor = [&](JointMotion motion) {
+            return static_cast<double>(calibration.factor(static_cast<int>(joint), motion));
+        };
+        factors.push_back(std::max(
+            {factor(JointMotion::standing), factor(JointMotion::changing), factor(JointMotion::moving)}));
+    }
+    return factors;
+}
+
+void print_contact_calibration(std::ostream& out, const ContactWatch::Calibration& calibration,
+                               Eigen::Index joints) {
+    if (calibration.abandoned()) {
+        out << "contacts: not calibrated, a contact ended the measurement\n";
+        return;
+    }
+    if (!calibration.finished()) {
+        out << "contacts: not calibrated, " << formatted("%.1f", calibration.remaining_s())
+            << " s of motion are missing\n";
+        return;
+    }
+    const std::vector<double> factors = contact_factors(calibration, joints);
+    const auto largest = std::ranges::max_element(factors);
+    out << "contacts: calibrated, the limits are at most " << formatted("%.2f", *largest)
+        << " times the model's (joint " << largest - factors.begin() + 1 << ")\n";
+}
+
 std::vector<double> values_of(const JointVector& joints) { return {joints.begin(), joints.end()}; }
 
 } // namespace
@@ -75,6 +105,9 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
         << '\n';
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
         print_learning(out, *learned);
+        if (learned->contact_calibration() != nullptr) {
+            print_contact_calibration(out, *learned->contact_calibration(), loop.bandwidth().size());
+        }
     }
     print_lead_in(out, loop);
     print_vibrations(out, loop);
@@ -141,6 +174,7 @@ nlohmann::ordered_json loop_json(const std::string& name, const ControlLoop& loo
                                 {"start_offset_rad", values_of(loop.start_offset())},
                                 {"observer_bandwidth_share", values_of(loop.bandwidth_share())},
                                 {"learning", nullptr},
+                                {"contact_calibration", nullptr},
                                 {"actions", nlohmann::ordered_json::array()}};
     if (const auto joint = loop.stopped_by()) {
         json["stopped_by_joint"] = *joint + 1;
@@ -150,6 +184,12 @@ nlohmann::ordered_json loop_json(const std::string& name, const ControlLoop& loo
                             {"learned", learned->counters().learned},
                             {"refused", learned->counters().faults},
                             {"multiply_adds_per_tick", learned->tick_cost()}};
+        if (const auto* const calibration = learned->contact_calibration()) {
+            json["contact_calibration"] = {
+                {"remaining_s", calibration->remaining_s()},
+                {"abandoned", calibration->abandoned()},
+                {"largest_factor", contact_factors(*calibration, loop.bandwidth().size())}};
+        }
     }
     for (const TakenAction& taken : loop.actions()) {
         json["actions"].push_back({{"time_s", taken.time_s},

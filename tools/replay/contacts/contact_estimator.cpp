@@ -23,9 +23,10 @@ void set_errors(const MeasuredSample& sample, const Tick& tick, std::span<float>
 
 class Watched final : public EstimatorDecorator<ContactEstimator> {
   public:
-    Watched(std::unique_ptr<RuntimeEstimator> estimator, const ContactModel& contact)
-        : EstimatorDecorator(std::move(estimator)), watch_(contact),
-          position_(contact.limit.size() / joint_motion_count), error_(position_.size()), contacts_(kept) {}
+    Watched(std::unique_ptr<RuntimeEstimator> estimator, const ContactSetup& setup)
+        : EstimatorDecorator(std::move(estimator)), watch_(setup),
+          position_(setup.limits.limit.size() / joint_motion_count), error_(position_.size()),
+          contacts_(kept) {}
 
     Tick tick(const MeasuredSample& sample, Budget budget) override {
         const Tick tick =
@@ -59,6 +60,7 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
     }
 
     const ContactWatch::Detector& detector() const override { return watch_.detector(); }
+    const ContactWatch::Calibration* calibration() const override { return watch_.calibration(); }
 
   private:
     static constexpr std::size_t kept = 4096;
@@ -99,9 +101,15 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
 
 } // namespace
 
-ContactWatch::ContactWatch(const ContactModel& contact)
-    : limits_(contact_constants(contact)),
-      detector_(Extent<dynamic>{static_cast<int>(limits_.size())}, limits_.data()) {}
+ContactWatch::ContactWatch(const ContactSetup& setup)
+    : limits_(contact_constants(setup.limits)),
+      calibration_(setup.calibration_s > 0
+                       ? std::make_unique<Calibration>(
+                             Extent<dynamic>{static_cast<int>(limits_.size())}, limits_.data(),
+                             static_cast<float>(setup.calibration_s), static_cast<float>(setup.rate_per_hour))
+                       : nullptr),
+      detector_(Extent<dynamic>{static_cast<int>(limits_.size())},
+                calibration_ != nullptr ? calibration_->limits() : limits_.data()) {}
 
 ContactModel unlimited_contact(std::size_t joints) {
     return {std::vector<double>(joints * joint_motion_count, no_contact_limit),
@@ -145,8 +153,8 @@ std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& t
 }
 
 std::unique_ptr<ContactEstimator> with_contacts(std::unique_ptr<RuntimeEstimator> estimator,
-                                                const ContactModel& contact) {
-    return std::make_unique<Watched>(std::move(estimator), contact);
+                                                const ContactSetup& setup) {
+    return std::make_unique<Watched>(std::move(estimator), setup);
 }
 
 } // namespace dfdyn::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/monitor/contact_calibration.hpp"
 #include "dfdyn/monitor/contact_detector.hpp"
 #include "tools/base/numerics/dynamic_storage.hpp"
 #include "tools/model/model.hpp"
@@ -24,19 +25,35 @@ struct DetectedContact {
     bool persistent = false; ///< it did not end, and counts as a change of the arm
 };
 
+/// Limits of a detector, and whether they are measured during operation first.
+struct ContactSetup {
+    ContactModel limits;
+    double calibration_s = 0;                     ///< duration of a dfdyn::ContactCalibration, s; 0: none
+    double rate_per_hour = contact_rate_per_hour; ///< of false contacts, for the calibration
+};
+
 /// A detector with its limits, for any number of joints.
 class ContactWatch {
   public:
     using Detector = ContactDetector<float, dynamic>;
+    using Calibration = ContactCalibration<float, dynamic>;
 
-    explicit ContactWatch(const ContactModel& contact);
+    explicit ContactWatch(const ContactSetup& setup);
     ContactWatch(const ContactWatch&) = delete; // the detector refers to the limits
     ContactWatch& operator=(const ContactWatch&) = delete;
 
-    /// Adds a tick. Returns true during a contact. Allocates nothing.
+    /// Adds a tick. Returns true during a contact, which ends a calibration: the motion after it is not that
+    /// of the work. Allocates nothing.
     bool tick(std::int64_t time_ns, std::span<const float> position, std::span<const float> error,
               std::span<const float> prediction) {
-        return detector_.tick(time_ns, position.data(), error.data(), prediction.data());
+        const bool contact = detector_.tick(time_ns, position.data(), error.data(), prediction.data());
+        if (calibration_ != nullptr) {
+            calibration_->tick(time_ns, detector_);
+            if (contact) {
+                calibration_->abandon();
+            }
+        }
+        return contact;
     }
     /// Registers a tick without a prediction or a measurement. Returns true during a contact.
     bool skip(std::int64_t time_ns) {
@@ -45,9 +62,11 @@ class ContactWatch {
     }
     void interrupt() { detector_.interrupt(); }
     const Detector& detector() const { return detector_; }
+    const Calibration* calibration() const { return calibration_.get(); } ///< null: none
 
   private:
     std::vector<ContactLimits<float>> limits_;
+    std::unique_ptr<Calibration> calibration_;
     Detector detector_;
 };
 
@@ -75,11 +94,13 @@ class ContactEstimator : public RuntimeEstimator {
     virtual std::vector<DetectedContact> take_contacts() = 0;
     /// Returns the detector's state after the last tick. Allocates nothing.
     virtual const ContactWatch::Detector& detector() const = 0;
+    /// Returns the calibration of its limits; null: none.
+    virtual const ContactWatch::Calibration* calibration() const = 0;
 };
 
-/// Returns an estimator that detects contacts with the limits `contact`. It learns neither during a contact
-/// nor while all joints are at rest.
+/// Returns an estimator that detects contacts. It learns neither during a contact nor while all joints are at
+/// rest.
 std::unique_ptr<ContactEstimator> with_contacts(std::unique_ptr<RuntimeEstimator> estimator,
-                                                const ContactModel& contact);
+                                                const ContactSetup& setup);
 
 } // namespace dfdyn::tools

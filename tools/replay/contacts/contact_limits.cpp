@@ -100,7 +100,7 @@ std::vector<PredictedRow> calibration_rows(const TrainedModel& model, std::span<
 /// Runs a detector over the rows; calls `use(row, detector)` after each.
 template <class Use>
 void detect(std::span<const PredictedRow> rows, const ContactModel& contact, Use use) {
-    ContactWatch watch(contact);
+    ContactWatch watch({contact});
     for (const PredictedRow& row : rows) {
         if (row.begins) {
             watch.interrupt();

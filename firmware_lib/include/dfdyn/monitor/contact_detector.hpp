@@ -38,7 +38,7 @@ namespace dfdyn {
 /// Do not use `Estimate::innovation`: it is 0 for an output beyond the model's limit, as in the hardest
 /// collisions. After an interruption during a contact, the push that remains becomes the baseline. Positions,
 /// errors and predictions have `joints` values in the same order; joints count from 0. No heap. Cost: `cost`
-/// per joint and tick, and four exponentials. Memory: 18 numbers per joint.
+/// per joint and tick, and four exponentials. Memory: 19 numbers per joint.
 template <class Scalar, int joints>
 class ContactDetector {
   public:
@@ -116,6 +116,8 @@ class ContactDetector {
         excess_ = 0; // no suspicion without a comparison: a learner that waits for its end would wait forever
     }
 
+    /// Returns whether a contact could begin in this tick: not within `settling_s` after an interruption.
+    [[nodiscard]] bool settled() const noexcept { return running_ && age_s_ >= settling_s; }
     /// Returns whether errors are compared: not after an interruption.
     [[nodiscard]] bool running() const noexcept { return running_; }
     /// Returns whether the last contact was accepted as a change of the arm, because it did not end.
@@ -141,6 +143,8 @@ class ContactDetector {
     [[nodiscard]] int joint() const noexcept { return joint_; }
     /// Returns the deviation of a joint in this tick, in its output's unit.
     [[nodiscard]] Scalar deviation(int joint) const noexcept { return joints_[joint].deviation(); }
+    /// Returns the magnitude of a joint's deviation relative to its limit in this tick, >= 0.
+    [[nodiscard]] Scalar share(int joint) const noexcept { return joints_[joint].share(); }
     /// Returns the recent change of a joint's prediction, in the output's unit.
     [[nodiscard]] Scalar predicted_change(int joint) const noexcept {
         return joints_[joint].predicted_change();

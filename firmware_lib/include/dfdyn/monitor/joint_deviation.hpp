@@ -84,7 +84,7 @@ class JointDeviation {
         velocity_ = earlier_velocity_ = acceleration_ = 0;
         first_prediction_pole_ = second_prediction_pole_ = earlier_prediction_ = prediction;
         first_pole_ = second_pole_ = low_ = high_ = error;
-        deviation_ = 0;
+        deviation_ = share_ = 0;
         direction_ = 0;
         since_change_s_ = change_s;
         motion_ = JointMotion::standing;
@@ -117,7 +117,8 @@ class JointDeviation {
         if (!contact) {
             follow_usual(steps);
         }
-        return std::min(std::abs(deviation_) / limit, largest_share);
+        share_ = std::min(std::abs(deviation_) / limit, largest_share);
+        return share_;
     }
 
     /// Ends a contact: extends the baseline to the present error.
@@ -131,6 +132,8 @@ class JointDeviation {
 
     /// Returns the deviation in this tick, in the output's unit.
     [[nodiscard]] Scalar deviation() const noexcept { return deviation_; }
+    /// Returns |deviation| / limit in this tick.
+    [[nodiscard]] Scalar share() const noexcept { return share_; }
     /// Returns the change of the prediction within `baseline_s`, in the output's unit.
     [[nodiscard]] Scalar predicted_change() const noexcept {
         return second_prediction_pole_ - earlier_prediction_;
@@ -222,7 +225,7 @@ class JointDeviation {
     Scalar first_pole_, second_pole_; ///< of the error
     Scalar first_prediction_pole_, second_prediction_pole_, earlier_prediction_;
     Scalar low_, high_; ///< baseline; equal unless the motion changes
-    Scalar deviation_;
+    Scalar deviation_, share_;
     Scalar usual_[joint_motion_count];
     Scalar since_change_s_;
     int direction_; ///< -1, 0, 1
