@@ -8,6 +8,8 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -26,13 +28,26 @@ constexpr double noticeable_travel = 0.1; ///< rad (m)
 
 bool constant(const Columns& columns, std::size_t index) { return !(travel(columns, index) > 0); }
 
-/// Returns whether the links moved by joint `joint` have inertia in the robot's file; true without a robot.
+/// Returns whether a column varies by no more than rounding errors, as the torque that a simulation computes
+/// for a stationary joint.
+bool rounded(const Columns& columns, std::size_t index) {
+    constexpr double rounding = 1e-12;
+    return !(travel(columns, index) > rounding * largest_magnitude(columns, index));
+}
+
+/// Returns whether joint `joint` moves inertia by the robot's file; true without a robot. A thin last body
+/// may have none about its own axis.
 bool moves_mass(const Robot* robot, std::size_t joint) {
     if (robot == nullptr || joint >= robot->joints.size()) {
         return true;
     }
-    return std::any_of(robot->joints.begin() + static_cast<std::ptrdiff_t>(joint), robot->joints.end(),
-                       [](const RobotJoint& one) { return !one.inertia.isZero(0); });
+    const auto own = robot->joints.begin() + static_cast<std::ptrdiff_t>(joint);
+    const InertialParameters& link = own->inertia; // mass, first moment, and xx xy xz yy yz zz
+    const Eigen::Matrix3d about_origin{
+        {link[4], link[5], link[6]}, {link[5], link[7], link[8]}, {link[6], link[8], link[9]}};
+    const double moved = own->prismatic ? link[0] : own->axis.dot(about_origin * own->axis);
+    return moved != 0 || std::any_of(own + 1, robot->joints.end(),
+                                     [](const RobotJoint& one) { return !one.inertia.isZero(0); });
 }
 
 bool moves(const Recording& recording) {
@@ -154,7 +169,7 @@ SetupFindings check_frozen_outputs(const Recording& recording, OutputKind output
     SetupFindings findings;
     const Columns& columns = recording.output;
     for (std::size_t output = 0; outputs != OutputKind::wrench && output < columns.names.size(); ++output) {
-        if (constant(columns, output)) {
+        if (rounded(columns, output)) {
             continue;
         }
         const bool steps = coarse(recording, output); // no saturation is recognised in these
@@ -273,7 +288,7 @@ SetupFindings check_saturated_outputs(const Recording& recording, OutputKind out
     SetupFindings findings;
     const Columns& columns = recording.output;
     for (std::size_t output = 0; outputs != OutputKind::wrench && output < columns.names.size(); ++output) {
-        if (constant(columns, output) || coarse(recording, output)) {
+        if (rounded(columns, output) || coarse(recording, output)) {
             continue;
         }
         const Range range = range_of(recording, output);

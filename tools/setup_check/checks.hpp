@@ -94,7 +94,7 @@ SetupFindings check_friction_sign(const Recording& recording, const RecordedMoti
 SetupFindings check_degrees_by_gravity(const Recording& recording, const RecordedMotion& recorded);
 
 /// Ratio of each output to the rigid body's, as a magnitude; empty where the rigid body explains less than
-/// half of the variance left by friction.
+/// half of the variance left by friction, and for joints without gravity that reverse less than four times.
 using OutputSizes = std::vector<std::optional<double>>;
 
 /// `parts`: the rigid body along the recording.
@@ -104,8 +104,9 @@ OutputSizes output_sizes(const ArmRecording& arm, const RigidParts& parts);
 /// more agree (within a factor of 10) on a factor of 50 too large or too small; for an arm of one joint, and
 /// for a wrench, a factor of 300. A warning if one joint of several is 300 times too large. For currents with
 /// unknown torque constants: from 50 A/N·m, a single joint from 200; or below 1 A per 500 N·m. Outputs more
-/// than 300 times too small indicate masses in grams, others torques of the motors.
-SetupFindings check_output_size(const ArmRecording& arm, const OutputSizes& sizes);
+/// than 300 times too small indicate masses in grams, others torques of the motors. Outputs less
+/// than 8 times (8 A/N·m) those of the rigid body with the heaviest plausible payload are a warning.
+SetupFindings check_output_size(const ArmRecording& arm, const RigidParts& parts, const OutputSizes& sizes);
 
 /// Detects smaller factors, from 8 on, as of motor torques before the gears: their median over the joints
 /// that move against gravity, or over all if there are none. A warning, and a mistake if outputs are too
@@ -129,11 +130,12 @@ SetupFindings check_output_delay(const ArmRecording& arm, const RigidParts& part
 /// - positions in degrees: of all joints that turn, of those beyond one turn, of one of these;
 /// - if the best of these leaves 3 % of the variance and more: the zero of one joint, 90 or 180 degrees away.
 ///
-/// The criterion is the sum over the outputs of the logarithm of the variance left by the set-up over the
-/// variance left by the alternative: 0.8 and more is a mistake, 0.5 a warning. For a wrench, exchanges and
-/// signs of positions are never a mistake, nor is gravity for an arm of one joint. Cost: about
-/// n^2 / 2 + 5 n alternatives of 2,000 rigid-body regressors each if some output is not explained, otherwise
-/// none.
+/// Outputs are compared in the moving_rows(). An exchange is a mistake only if gravity, friction
+/// or inertia show it, otherwise a warning. The criterion is the sum over the outputs of the logarithm
+/// of the variance left by the set-up over the variance left by the alternative: 0.8 and more is a mistake,
+/// 0.5 a warning. For a wrench, exchanges and signs of positions are never a mistake, nor is gravity for an
+/// arm of one joint. Cost: about n^2 / 2 + 5 n alternatives of 2,000 rigid-body regressors each if some
+/// output is not explained, otherwise none.
 SetupFindings check_readings(const ArmRecording& arm, const RigidParts& parts);
 
 /// Compares the set-up with zeros of one joint that are 90 or 180 degrees away, by the same criterion. A zero
@@ -144,7 +146,8 @@ SetupFindings check_zeros(const ArmRecording& arm, const RigidParts& parts);
 /// Detects a robot's file that does not belong to the recording: a mistake if the file's rigid body with any
 /// payload leaves a large residual at the gravity-loaded joints, and smooth functions of the motion a far
 /// smaller one. Each joint is compared in the rows in which it moves, if they are enough for this number of
-/// functions. Joints without gravity in the file, and wrenches, are not compared. Cost: T (8 n)^2 per output.
+/// functions. Both models have Coulomb friction with a sharp and with a soft transition. Joints without
+/// gravity in the file, and wrenches, are not compared. Cost: T (8 n)^2 per output.
 SetupFindings check_robot_match(const ArmRecording& arm, const RigidParts& parts);
 
 } // namespace dfdyn::tools

@@ -24,11 +24,15 @@ using Eigen::VectorXd;
 
 constexpr double most_torque_constant = 500; ///< N·m/A at a joint, behind its gear
 constexpr double largest_gear_ratio = 300;
+constexpr double suspicious = 8; ///< a gear ratio or a unit: errors of masses are smaller
 
 /// Returns the ratio of an output to the rigid body's, as a magnitude; empty if the rigid body explains too
-/// little.
+/// little. Without gravity and several reversals inertia looks like friction of an unknown shape.
 std::optional<double> size_of(const ArmRecording& arm, const RigidParts& parts, Index k) {
     constexpr double clearly = 0.5;
+    if (!arm.wrench() && parts.gravity.col(k).isZero(0) && !swings(arm.recorded.motion, k, certain_turns)) {
+        return std::nullopt;
+    }
     const VectorXd output = arm.output(k);
     const MatrixXd friction =
         arm.wrench() ? MatrixXd(output.size(), 0) : friction_columns(arm.recorded.motion, k);
@@ -99,6 +103,24 @@ OutputSizes sizes_by_gravity(const ArmRecording& arm, const RigidParts& parts, c
     return result;
 }
 
+/// Returns the largest ratio of an output to the rigid body's with the heaviest plausible payload. A payload
+/// can make a wrist's output a hundred times as large as the file's, but no output larger than this.
+double least_factor(const ArmRecording& arm, const RigidParts& parts, const OutputSizes& sizes) {
+    const MatrixXd unloaded = parts.gravity + parts.inertia;
+    const VectorXd by_file = deviations(unloaded);
+    VectorXd largest = by_file;
+    for (const MatrixXd& loaded : parts.loaded) {
+        largest = largest.cwiseMax(deviations(loaded + parts.inertia));
+    }
+    double factor = 0;
+    for (Index k = 0; k < arm.counted(); ++k) {
+        if (const std::optional<double>& size = sizes[static_cast<std::size_t>(k)]) {
+            factor = std::max(factor, *size * by_file[k] / largest[k]);
+        }
+    }
+    return factor;
+}
+
 std::string heavy_text(const ArmRecording& arm, double factor) {
     return "columns " + listed(arm.recording.output.names) +
            ": expected outputs of the robot's model, found " + rounded_text(factor) +
@@ -117,7 +139,7 @@ OutputSizes output_sizes(const ArmRecording& arm, const RigidParts& parts) {
     return sizes;
 }
 
-SetupFindings check_output_size(const ArmRecording& arm, const OutputSizes& sizes) {
+SetupFindings check_output_size(const ArmRecording& arm, const RigidParts& parts, const OutputSizes& sizes) {
     std::vector<double> values = known(sizes);
     if (values.empty()) {
         return {};
@@ -130,8 +152,9 @@ SetupFindings check_output_size(const ArmRecording& arm, const OutputSizes& size
     if (factor < too_large && factor > too_small) {
         return {};
     }
-    // a payload can dominate one joint, but never makes an output much smaller
-    const bool certain = several || arm.wrench() || arm.counted() == 1 || factor < too_small;
+    // a payload or a rotor can dominate some joints, but never makes an output much smaller
+    const bool payload = factor >= too_large && least_factor(arm, parts, sizes) < suspicious;
+    const bool certain = !payload && (several || arm.wrench() || arm.counted() == 1 || factor < too_small);
     const Severity severity = certain ? Severity::mistake : Severity::warning;
     const std::string columns = listed(arm.recording.output.names);
     if (factor > too_small || arm.wrench()) {
@@ -144,7 +167,6 @@ SetupFindings check_output_size(const ArmRecording& arm, const OutputSizes& size
 }
 
 SetupFindings check_output_scale(const ArmRecording& arm, const RigidParts& parts, const OutputSizes& sizes) {
-    constexpr double suspicious = 8; // a gear ratio or a unit: errors of masses are smaller
     if (!arm.gains_known || arm.wrench()) {
         return {};
     }

@@ -44,8 +44,9 @@ struct ArmRecording {
 struct RigidParts {
     Eigen::MatrixXd gravity; ///< torque at standstill at each position
     Eigen::MatrixXd inertia; ///< additional torque of the motion
-    /// The arm's gravity plus gravity and inertia of the heaviest plausible payload, at each corner of a cube
-    /// of 0.3 m around the tip: 8 matrices, none for a wrench.
+    /// The arm's gravity plus gravity and inertia of the heaviest plausible payload, with its
+    /// centre at each corner of a cube of 0.4 m around the tip, and with the moment of inertia of a point
+    /// mass there or at the tip: 16 matrices, none for a wrench.
     std::vector<Eigen::MatrixXd> loaded;
 
     Eigen::VectorXd sum(Eigen::Index k) const { return gravity.col(k) + inertia.col(k); }
@@ -72,8 +73,13 @@ Eigen::VectorXd friction_direction(const Eigen::VectorXd& velocity);
 Eigen::MatrixXd smooth_columns(const RobotMotion& motion);
 
 /// Returns whether a joint moves by at least 0.1 rad (m) and reverses at least `turns` times, from a tenth of
-/// its largest speed to the opposite.
+/// its largest speed to the opposite, and by 0.01 rad (m) or more.
 bool swings(const RobotMotion& motion, Eigen::Index joint, int turns);
+
+/// Returns the rows in which a joint is faster than 3 % of its largest speed (and 2e-3 rad/s), all rows if
+/// none moves by 0.1 rad (m). While the arm rests, static friction may bear any torque up to the break-away
+/// torque, a different one in each posture, which looks like gravity.
+std::vector<Eigen::Index> moving_rows(const RobotMotion& motion);
 
 /// Number of a joint's reversals after which its friction is reliable evidence.
 inline constexpr int certain_turns = 4;
@@ -90,7 +96,8 @@ enum class FrictionSign { unclear, brakes, drives };
 /// cosine, sines and cosines of sums of neighbouring joints), all accelerations, and friction. The sign is
 /// clear if the joint reverses four times and friction of one sign leaves less than 60 % of the residual of
 /// the other, a difference of at least 1 % of the variance. All but one of the (eight) parts of the recording
-/// with visible friction, at least five, must agree. Cost: T (7 n)^2.
+/// with visible friction, at least five, must agree, and the step of Coulomb friction alone must have this
+/// sign, in addition to a viscous friction of any sign. Cost: T (7 n)^2.
 FrictionSign friction_sign(const RecordedMotion& recorded, Eigen::Index joint);
 
 /// Returns the share of an output's variance that remains after a fit with nonnegative factors and an offset.

@@ -43,6 +43,14 @@ double independent_rows(const ArmRecording& arm, std::size_t rows) {
     return static_cast<double>(rows) * std::min(1.0, step_s / apart_s);
 }
 
+/// Coulomb friction with a soft transition between its directions, T: at a third of the largest speed. In
+/// slow motion presliding takes a large part of a move.
+VectorXd soft_friction(const RobotMotion& motion, Index joint) {
+    constexpr double share = 0.3;
+    const VectorXd velocity = motion.velocity.col(joint);
+    return (velocity / (share * velocity.cwiseAbs().maxCoeff())).array().tanh();
+}
+
 /// Remaining shares of an output's variance for two models, while the joint moves.
 struct Comparison {
     double by_robot = 0; ///< the robot's body, with any payload and friction
@@ -61,9 +69,14 @@ std::optional<Comparison> compare(const ArmRecording& arm, const RigidParts& par
         return std::nullopt;
     }
     const VectorXd output = arm.output(joint)(rows);
+    const auto with_soft_friction = [&](const MatrixXd& columns) {
+        MatrixXd all(columns.rows(), columns.cols() + 1);
+        all << columns, soft_friction(motion, joint);
+        return MatrixXd(all(rows, Eigen::all));
+    };
     const SignedFit any =
-        fit_signed(output, smooth(rows, Eigen::all), friction_columns(motion, joint)(rows, Eigen::all));
-    return Comparison{left_by(output, expected_columns(arm, motion, parts, joint)(rows, Eigen::all)),
+        fit_signed(output, smooth(rows, Eigen::all), with_soft_friction(friction_columns(motion, joint)));
+    return Comparison{left_by(output, with_soft_friction(expected_columns(arm, motion, parts, joint))),
                       any.left / free_share};
 }
 

@@ -33,7 +33,7 @@ SetupFindings check_by_robot(const Recording& recording, const SetupQuestion& qu
                            gains_known};
     const RigidParts parts = rigid_parts(arm.robot, arm.kind, arm.recorded.motion);
     const OutputSizes sizes = output_sizes(arm, parts);
-    SetupFindings findings = check_output_size(arm, sizes);
+    SetupFindings findings = check_output_size(arm, parts, sizes);
     if (findings.empty()) {
         append(findings, check_readings(arm, parts));
     }

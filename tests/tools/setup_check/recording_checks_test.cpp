@@ -148,12 +148,16 @@ TEST_CASE("outputs in steps of more than 1 % of their range are neither saturate
     CHECK(check_dead_outputs(rounded, OutputKind::motor_current, nullptr).empty());
 }
 
-TEST_CASE("an output that is clipped at a limit is saturated") {
+TEST_CASE("an output that is clipped at a limit is saturated but not one that varies by rounding errors") {
     Recording clipped = swinging();
     change_outputs(clipped, [](double* tau) { tau[1] = std::min(tau[1], 5.0); });
     check_single(check_saturated_outputs(clipped, OutputKind::joint_torque), Severity::mistake,
                  "column tau2: expected values below the sensor's or the drive's limit, found 5");
     CHECK(check_saturated_outputs(swinging(), OutputKind::joint_torque).empty());
+    Recording held = swinging();
+    change_outputs(held, [](double* tau) { tau[1] = tau[0] > 0 ? 5 : 5 + 9e-16; });
+    CHECK(check_saturated_outputs(held, OutputKind::joint_torque).empty());
+    CHECK(check_dead_outputs(held, OutputKind::joint_torque, nullptr).empty());
 }
 
 TEST_CASE("a joint that moves no mass has no dead output") {
@@ -165,6 +169,8 @@ TEST_CASE("a joint that moves no mass has no dead output") {
     CHECK(check_dead_outputs(dead, OutputKind::joint_torque, &robot).empty());
     robot.joints[1].inertia = robot.joints[0].inertia;
     CHECK(any_mistake(check_dead_outputs(dead, OutputKind::joint_torque, &robot)));
+    robot.joints[1].inertia = body_parameters(1, {0, 0, 0.1}, Eigen::Matrix3d::Zero());
+    CHECK(check_dead_outputs(dead, OutputKind::joint_torque, &robot).empty());
 }
 
 TEST_CASE("impossibly large outputs are mA or mN·m and whole numbers above 200 are a warning") {

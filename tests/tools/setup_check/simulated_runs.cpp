@@ -51,25 +51,30 @@ RobotMotion multisine(Index joints, const RunKind& kind, std::mt19937_64& engine
     return motion;
 }
 
-/// Moves of about `speed` by polynomials of fifth order from posture to posture, with a rest after each.
+/// Moves by polynomials of fifth order from posture to posture, with a rest after each. A mean step, of 1
+/// rad, has its largest speed at `speed`.
 RobotMotion moves_and_rests(Index joints, const RunKind& kind, std::mt19937_64& engine) {
     const auto rows = static_cast<Index>(kind.duration_s * kind.rate_hz);
-    const double move_s = 1 / kind.speed;
+    const double move_s = 1.875 / kind.speed;
+    const auto moves = static_cast<Index>(kind.duration_s / (move_s + kind.rest_s)) + 2;
+    const Index postures = kind.postures > 0 ? kind.postures : moves;
     RobotMotion motion;
     motion.position = motion.velocity = motion.acceleration = MatrixXd::Zero(rows, joints);
     for (Index joint = 0; joint < joints; ++joint) {
-        const bool moves = kind.moving.empty() || kind.moving[static_cast<std::size_t>(joint)];
-        double from = uniform(engine, -1.5, 1.5);
-        double step = 0;
-        double start_s = 0;
+        VectorXd posture(postures);
+        for (double& one : posture) {
+            one = uniform(engine, -1.5, 1.5);
+        }
+        if (!kind.moving.empty() && !kind.moving[static_cast<std::size_t>(joint)]) {
+            posture.setConstant(posture[0]);
+        }
         for (Index row = 0; row < rows; ++row) {
             const double time_s = static_cast<double>(row) / kind.rate_hz;
-            if (row == 0 || time_s >= start_s + move_s + kind.rest_s) {
-                start_s = time_s;
-                from += step;
-                step = moves ? uniform(engine, -1.5, 1.5) - from : 0;
-            }
-            const double x = std::min(1.0, (time_s - start_s) / move_s);
+            const auto move = static_cast<Index>(time_s / (move_s + kind.rest_s));
+            const double from = posture[move % postures];
+            const double step = posture[(move + 1) % postures] - from;
+            const double since_s = time_s - static_cast<double>(move) * (move_s + kind.rest_s);
+            const double x = std::min(1.0, since_s / move_s);
             motion.position(row, joint) = from + step * x * x * x * (10 + x * (6 * x - 15));
             motion.velocity(row, joint) = step / move_s * 30 * x * x * (1 - x) * (1 - x);
             motion.acceleration(row, joint) = step / (move_s * move_s) * 60 * x * (1 - x) * (1 - 2 * x);
@@ -92,12 +97,15 @@ void add_friction(MatrixXd& torque, const RobotMotion& motion, const RunKind& ki
         const double level = kind.friction * std::max(0.1, torque.col(joint).cwiseAbs().maxCoeff()) *
                              uniform(engine, 0.5, 1.5);
         double held = 0;
+        double direction = 0; // of the last move
         for (Index row = 0; row < torque.rows(); ++row) {
             const double velocity = motion.velocity(row, joint);
             const bool rests = kind.rest_s > 0 && velocity == 0;
             if (rests && (row == 0 || motion.velocity(row - 1, joint) != 0)) {
-                held = level * uniform(engine, -1.3, 1.3);
+                const double least = direction != 0 && chance(engine, 0.5) ? 0 : -1.3;
+                held = (direction < 0 ? -level : level) * uniform(engine, least, 1.3);
             }
+            direction = rests ? direction : velocity;
             torque(row, joint) += rests ? held : level * (std::tanh(velocity / 0.01) + 0.3 * velocity);
         }
     }
@@ -112,6 +120,26 @@ void add_noise(MatrixXd& values, const VectorXd& deviation, std::mt19937_64& eng
     }
 }
 
+VectorXd deviations(const MatrixXd& values) {
+    const MatrixXd centred = values.rowwise() - values.colwise().mean();
+    return centred.colwise().norm().transpose() / std::sqrt(static_cast<double>(values.rows()));
+}
+
+/// Standard deviation of the outputs' noise. A moving joint without any torque, as of a body without inertia
+/// about the axis, has at least the noise of its sensor: no measured output is constant.
+VectorXd output_noise(const MatrixXd& outputs, const RobotMotion& motion, const RunKind& kind) {
+    constexpr double sensor = 1e-3;
+    const VectorXd deviation = deviations(outputs);
+    VectorXd noise = kind.noise * deviation;
+    for (Index joint = 0; joint < motion.position.cols() && kind.outputs != OutputKind::wrench; ++joint) {
+        const auto position = motion.position.col(joint);
+        if (deviation[joint] < 1e-9 && position.maxCoeff() > position.minCoeff()) {
+            noise[joint] = sensor;
+        }
+    }
+    return noise;
+}
+
 /// 6 kg, or the arm's own mass if it is lighter.
 double heaviest_payload(const Robot& robot) {
     double mass = 0;
@@ -119,11 +147,6 @@ double heaviest_payload(const Robot& robot) {
         mass += joint.inertia[0];
     }
     return std::min(6.0, mass);
-}
-
-VectorXd deviations(const MatrixXd& values) {
-    const MatrixXd centred = values.rowwise() - values.colwise().mean();
-    return centred.colwise().norm().transpose() / std::sqrt(static_cast<double>(values.rows()));
 }
 
 } // namespace
@@ -134,7 +157,8 @@ std::string RunKind::describe() const {
              : outputs == OutputKind::joint_torque ? "torques"
                                                    : "currents")
          << ", speed " << speed << ", " << rate_hz << " Hz, " << duration_s << " s, payload " << payload_kg
-         << " kg, friction " << friction << ", noise " << noise << ", rests of " << rest_s << " s, moving";
+         << " kg, friction " << friction << ", noise " << noise << ", rests of " << rest_s << " s, postures "
+         << postures << ", moving";
     for (const bool moves : moving) {
         text << ' ' << moves;
     }
@@ -157,7 +181,7 @@ Recording simulated_run(const Robot& robot, const RunKind& kind, std::mt19937_64
             outputs.col(joint) /= 0.5 * std::pow(40, uniform(engine, 0, 1));
         }
     }
-    add_noise(outputs, kind.noise * deviations(outputs), engine);
+    add_noise(outputs, output_noise(outputs, motion, kind), engine);
     MatrixXd position = motion.position;
     add_noise(position, VectorXd::Constant(joints, kind.position_noise), engine);
     Recording recording;
@@ -189,6 +213,7 @@ RunKind random_kind(const Robot& robot, OutputKind outputs, std::mt19937_64& eng
     kind.noise = chance(engine, 0.5) ? uniform(engine, 0, 0.3) : 0;
     kind.position_noise = chance(engine, 0.5) ? 0 : 1e-4 * uniform(engine, 0, 1);
     kind.rest_s = chance(engine, 0.3) ? uniform(engine, 0.5, 3) : 0;
+    kind.postures = chance(engine, 0.5) ? 2 + static_cast<int>(engine() % 3) : 0;
     if (chance(engine, 0.5)) {
         for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
             kind.moving.push_back(chance(engine, 0.5));

@@ -23,14 +23,16 @@ struct RunKind {
     double position_noise = 1e-5; ///< standard deviation, rad
     double duration_s = 30;
     double rest_s = 0; ///< above 0: moves from posture to posture, with so much rest in between
+    int postures = 0;  ///< that these moves visit in turn; 0: a new one each
 
     std::string describe() const;
 };
 
 /// Multisine motion, or moves with rests, of a rigid body with payload, friction and noise; the robot's file
-/// lacks the payload. The friction of a joint at rest holds a random torque of at most 1.3 times its level.
-/// Currents have a random torque constant per joint of 0.5 to 20 N·m/A. Equal arguments and engines give
-/// equal recordings.
+/// lacks the payload. The friction of a joint at rest holds a random torque of at most 1.3 times its level,
+/// in about half of the rests in the direction of the last move, as behind a position controller. Currents
+/// have a random torque constant per joint of 0.5 to 20 N·m/A. Equal arguments and engines give equal
+/// recordings.
 tools::Recording simulated_run(const tools::Robot& robot, const RunKind& kind, std::mt19937_64& engine);
 
 /// A random run for a robot: slow or fast, 40 Hz to 1 kHz, some joints at rest, with and without rests,
