@@ -49,7 +49,8 @@ void add_model(CLI::App& command, LoopOptions& options) {
     command
         .add_option("--contact-calibration", options.limits.contact_calibration_s,
                     "With --on-contact: measures the limits of contacts during the first S seconds with "
-                    "motion. Nobody may touch the arm then: the limits are ten times the model's. Default: "
+                    "motion. Nobody may touch the arm then: the limits are up to ten times the model's. "
+                    "Default: "
                     "the model's limits from the start")
         ->check(number_in(30, 3600))
         ->type_name("S");

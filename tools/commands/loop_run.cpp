@@ -277,8 +277,8 @@ void check_usage(const LoopOptions& options) {
            "loop: --contact-rate: expected --on-contact, found none");
     refuse(options.on_contact.empty() && options.limits.contact_calibration_s > 0,
            "loop: --contact-calibration: expected --on-contact, found none");
-    refuse(options.duration_s > 0 && options.limits.contact_calibration_s > options.duration_s,
-           "loop: --contact-calibration: expected less than --duration, found more");
+    refuse(options.duration_s > 0 && options.limits.contact_calibration_s >= options.duration_s,
+           "loop: --contact-calibration: expected less than --duration, found no less");
     refuse(!model && !(options.restored.empty() && options.saved.empty()),
            "loop: --restore and --save: expected --model, found none");
     refuse(options.simulate && !options.interface.empty(),

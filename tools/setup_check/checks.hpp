@@ -4,7 +4,7 @@
 #include "tools/base/recording/recording.hpp"
 #include "tools/robot/motion.hpp"
 #include "tools/robot/robot.hpp"
-#include "tools/setup_check/rigid_comparison.hpp"
+#include "tools/setup_check/rigid_body/rigid_comparison.hpp"
 #include "tools/setup_check/setup_finding.hpp"
 
 #include <cstddef>
@@ -85,7 +85,7 @@ SetupFindings check_quantised_positions(const Recording& recording);
 SetupFindings check_stamps(const Recording& recording);
 
 /// Detects outputs whose friction accelerates the joint instead of braking it, without a robot: a mistake if
-/// friction_sign() confirms it. A wrench has no friction of joints.
+/// friction_sign() is certain, otherwise a warning. A wrench has no friction of joints.
 SetupFindings check_friction_sign(const Recording& recording, const RecordedMotion& recorded,
                                   OutputKind outputs);
 
@@ -104,8 +104,9 @@ OutputSizes output_sizes(const ArmRecording& arm, const RigidParts& parts);
 /// more agree (within a factor of 10) on a factor of 50 too large or too small; for an arm of one joint, and
 /// for a wrench, a factor of 300. A warning if one joint of several is 300 times too large. For currents with
 /// unknown torque constants: from 50 A/N·m, a single joint from 200; or below 1 A per 500 N·m. Outputs more
-/// than 300 times too small indicate masses in grams, others torques of the motors. Outputs less
-/// than 8 times (8 A/N·m) those of the rigid body with the heaviest plausible payload are a warning.
+/// than 300 times too small indicate masses in grams, others torques of the motors. Too large
+/// outputs are only a warning if none exceeds 8 times (8 A/N·m) that of the rigid body with the heaviest
+/// plausible payload.
 SetupFindings check_output_size(const ArmRecording& arm, const RigidParts& parts, const OutputSizes& sizes);
 
 /// Detects smaller factors, from 8 on, as of motor torques before the gears: their median over the joints
@@ -133,9 +134,9 @@ SetupFindings check_output_delay(const ArmRecording& arm, const RigidParts& part
 /// Outputs are compared in the moving_rows(). An exchange is a mistake only if gravity, friction
 /// or inertia show it, otherwise a warning. The criterion is the sum over the outputs of the logarithm
 /// of the variance left by the set-up over the variance left by the alternative: 0.8 and more is a mistake,
-/// 0.5 a warning. For a wrench, exchanges and signs of positions are never a mistake, nor is gravity for an
-/// arm of one joint. Cost: about n^2 / 2 + 5 n alternatives of 2,000 rigid-body regressors each if some
-/// output is not explained, otherwise none.
+/// 0.5 a warning. For a wrench, exchanges and signs of positions are never a mistake, nor is a zero that
+/// leaves much of it; nor is gravity for an arm of one joint. Cost: about n^2 / 2 + 5 n alternatives of 2,000
+/// rigid-body regressors each if some output is not explained, otherwise none.
 SetupFindings check_readings(const ArmRecording& arm, const RigidParts& parts);
 
 /// Compares the set-up with zeros of one joint that are 90 or 180 degrees away, by the same criterion. A zero

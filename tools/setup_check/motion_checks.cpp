@@ -3,8 +3,9 @@
 
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
-#include "tools/setup_check/rigid_comparison.hpp"
-#include "tools/setup_check/signed_fit.hpp"
+#include "tools/setup_check/friction_sign.hpp"
+#include "tools/setup_check/rigid_body/rigid_comparison.hpp"
+#include "tools/setup_check/rigid_body/signed_fit.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -63,10 +64,11 @@ SetupFindings check_friction_sign(const Recording& recording, const RecordedMoti
         return findings; // no output is that of a joint
     }
     for (Index joint = 0; joint < recorded.outputs.cols(); ++joint) {
-        if (friction_sign(recorded, joint) == FrictionSign::drives) {
+        const FrictionEvidence friction = friction_sign(recorded, joint);
+        if (friction.sign == FrictionSign::drives) {
             const auto index = static_cast<std::size_t>(joint);
             findings.push_back(
-                {SetupFault::torque_sign, Severity::mistake,
+                {SetupFault::torque_sign, friction.certain ? Severity::mistake : Severity::warning,
                  recording.position.names[index] + ", " + recording.output.names[index],
                  "columns " + recording.position.names[index] + " and " + recording.output.names[index] +
                      ": expected an output that overcomes the joint's friction, found one that "

@@ -2,7 +2,7 @@
 #include "tools/setup_check/setup_check.hpp"
 
 #include "tools/setup_check/checks.hpp"
-#include "tools/setup_check/rigid_comparison.hpp"
+#include "tools/setup_check/rigid_body/rigid_comparison.hpp"
 
 #include <Eigen/Core>
 
@@ -19,7 +19,8 @@ void append(SetupFindings& findings, SetupFindings&& more) {
 }
 
 /// Returns the findings of the first check that has any, because later checks would report the same mistake
-/// differently; and a common delay, which can be its reason.
+/// differently; and a common delay, which can be its reason. A payload that makes outputs too large hides no
+/// wrong sign or order.
 SetupFindings check_by_robot(const Recording& recording, const SetupQuestion& question,
                              CheckedMotion checked) {
     const bool current = question.outputs == OutputKind::motor_current;
@@ -34,7 +35,7 @@ SetupFindings check_by_robot(const Recording& recording, const SetupQuestion& qu
     const RigidParts parts = rigid_parts(arm.robot, arm.kind, arm.recorded.motion);
     const OutputSizes sizes = output_sizes(arm, parts);
     SetupFindings findings = check_output_size(arm, parts, sizes);
-    if (findings.empty()) {
+    if (!any_mistake(findings)) {
         append(findings, check_readings(arm, parts));
     }
     if (findings.empty()) {

@@ -5,8 +5,8 @@
 #include "tools/base/recording/stretches.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
-#include "tools/setup_check/rigid_comparison.hpp"
-#include "tools/setup_check/signed_fit.hpp"
+#include "tools/setup_check/rigid_body/rigid_comparison.hpp"
+#include "tools/setup_check/rigid_body/signed_fit.hpp"
 
 #include <algorithm>
 #include <cmath>

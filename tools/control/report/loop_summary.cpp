@@ -188,7 +188,9 @@ nlohmann::ordered_json loop_json(const std::string& name, const ControlLoop& loo
             json["contact_calibration"] = {
                 {"remaining_s", calibration->remaining_s()},
                 {"abandoned", calibration->abandoned()},
-                {"largest_factor", contact_factors(*calibration, loop.bandwidth().size())}};
+                {"largest_factor", calibration->finished()
+                                       ? contact_factors(*calibration, loop.bandwidth().size())
+                                       : std::vector<double>{}}};
         }
     }
     for (const TakenAction& taken : loop.actions()) {

@@ -14,9 +14,10 @@ namespace dfdyn {
 /// will detect contacts. Nobody may touch the arm meanwhile.
 ///
 /// The limits of a model belong to the recordings of its training. A loop that learns follows its reference
-/// more accurately than the loop that recorded them, and its errors at starts and stops differ. During the
-/// calibration the limits are `calibration_factor` times the model's, so that only a hard collision is a
-/// contact. A second with a contact, or in which the detector settles, is discarded; it takes no time of the
+/// more accurately than the loop that recorded them, and its errors at starts and stops differ. In the first
+/// half of the calibration the limits are `calibration_factor` times the model's, so that only a hard
+/// collision is a contact. In the second half this is the largest factor, and the others are in proportion. A
+/// second with a contact, or in which the detector settles, is discarded; it takes no time of the
 /// calibration.
 ///
 /// In the first half each limit, of a joint in a JointMotion, becomes the largest deviation; that of a motion
@@ -28,7 +29,9 @@ namespace dfdyn {
 ///     static ContactCalibration<float, 6> calibration({}, arm::contact_limits, 60, 0.1F);
 ///     static ContactDetector<float, 6> detector({}, calibration.limits());
 ///     ...
-///     detector.tick(...); // or skip
+///     if (detector.tick(...)) { // or skip
+///         calibration.abandon(); // if the motion does not continue after a contact
+///     }
 ///     calibration.tick(sample.time_ns, detector);
 ///
 /// No heap. Cost: a few comparisons per joint and tick, `peak_count` more once per second, and 30 per joint
@@ -189,11 +192,11 @@ class ContactCalibration {
         Scalar largest_factor = 1;
         for (int k = 0; k < count_; ++k) {
             const Scalar* const noted = joints_[k].noted;
-            const Scalar largest = at_least_one(*std::max_element(noted, noted + joint_motion_count));
+            const Scalar largest = within_factors(*std::max_element(noted, noted + joint_motion_count));
             ContactLimits<Scalar>& one = limits_[k];
             one = trained_[k];
             for (int motion = 0; motion < joint_motion_count; ++motion) {
-                one.limit[motion] *= noted[motion] > 0 ? at_least_one(noted[motion]) : largest;
+                one.limit[motion] *= noted[motion] > 0 ? within_factors(noted[motion]) : largest;
             }
             one.relative *= largest;
             one.limit[0] = std::max(one.limit[0], standing_share * one.limit[1]);
@@ -203,7 +206,7 @@ class ContactCalibration {
         scale_limits(scale_);
     }
 
-    [[nodiscard]] static Scalar at_least_one(Scalar factor) noexcept {
+    [[nodiscard]] static Scalar within_factors(Scalar factor) noexcept {
         return std::clamp(factor, Scalar(1), calibration_factor);
     }
 

@@ -24,6 +24,11 @@ struct CheckedMotion {
 /// has such columns. Returns nothing if fewer than 100 rows have derivatives.
 std::optional<CheckedMotion> checked_motion(const Recording& recording);
 
+/// Returns the standard deviation of the noise in the accelerations of checked_motion(), rad/s^2 (m/s^2). It
+/// is estimated from the fourth differences of the joint's positions, of which motion is a small part: an
+/// upper bound. For the noise of a quadratic fit's curvature see Savitzky and Golay, Anal. Chem. 36 (1964).
+double acceleration_noise(const Recording& recording, Eigen::Index joint);
+
 /// The measured outputs of a moving arm, and the robot of the set-up.
 struct ArmRecording {
     const Robot& robot;
@@ -40,7 +45,7 @@ struct ArmRecording {
 };
 
 /// Outputs of a robot's rigid body along a motion, T x m, as a sum of two parts; N·m also for currents.
-/// Values below 1e-9 of the largest are 0.
+/// Values below 1e-9 of the largest are 0, and the gravity of an axis below 1e-4: rounded angles tilt it.
 struct RigidParts {
     Eigen::MatrixXd gravity; ///< torque at standstill at each position
     Eigen::MatrixXd inertia; ///< additional torque of the motion
@@ -72,6 +77,12 @@ Eigen::VectorXd friction_direction(const Eigen::VectorXd& velocity);
 /// neighbours, and the accelerations, T x (at most 8 n).
 Eigen::MatrixXd smooth_columns(const RobotMotion& motion);
 
+/// Returns whether a joint moves by at least 0.1 rad (m).
+bool travels(const RobotMotion& motion, Eigen::Index joint);
+
+/// Returns the first row after each reversal of a joint, from a tenth of its largest speed to the opposite.
+std::vector<Eigen::Index> reversals(const RobotMotion& motion, Eigen::Index joint);
+
 /// Returns whether a joint moves by at least 0.1 rad (m) and reverses at least `turns` times, from a tenth of
 /// its largest speed to the opposite, and by 0.01 rad (m) or more.
 bool swings(const RobotMotion& motion, Eigen::Index joint, int turns);
@@ -88,17 +99,6 @@ inline constexpr int certain_turns = 4;
 /// wrench; for a joint's output gravity, gravity with payloads, inertia and friction.
 Eigen::MatrixXd expected_columns(const ArmRecording& arm, const RobotMotion& motion, const RigidParts& parts,
                                  Eigen::Index k);
-
-/// Sign of the friction in a joint's output, in addition to any gravity and inertia.
-enum class FrictionSign { unclear, brakes, drives };
-
-/// Fits output `joint` by least squares with smooth functions of the positions (each position, its sine and
-/// cosine, sines and cosines of sums of neighbouring joints), all accelerations, and friction. The sign is
-/// clear if the joint reverses four times and friction of one sign leaves less than 60 % of the residual of
-/// the other, a difference of at least 1 % of the variance. All but one of the (eight) parts of the recording
-/// with visible friction, at least five, must agree, and the step of Coulomb friction alone must have this
-/// sign, in addition to a viscous friction of any sign. Cost: T (7 n)^2.
-FrictionSign friction_sign(const RecordedMotion& recorded, Eigen::Index joint);
 
 /// Returns the share of an output's variance that remains after a fit with nonnegative factors and an offset.
 double left_by(const Eigen::VectorXd& output, const Eigen::MatrixXd& columns);

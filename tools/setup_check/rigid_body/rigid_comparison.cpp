@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/setup_check/rigid_comparison.hpp"
+#include "tools/setup_check/rigid_body/rigid_comparison.hpp"
 
 #include "tools/base/recording/stretches.hpp"
 #include "tools/robot/dynamics/friction_direction.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/inertia.hpp"
 #include "tools/robot/regressor.hpp"
-#include "tools/setup_check/signed_fit.hpp"
+#include "tools/setup_check/rigid_body/signed_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,6 +54,23 @@ Recording thinned(const Recording& recording, std::size_t stride) {
     return result;
 }
 
+/// Rows of which the derivatives are computed.
+struct DerivativeRows {
+    std::size_t stride; ///< every so many rows of the recording
+    int half_width;     ///< rows before and after
+    double step_s;      ///< between them
+};
+
+DerivativeRows derivative_rows(const Recording& recording) {
+    const double step_s = median_step_s(recording);
+    const double stride = std::max(1.0, std::round(row_step_s / step_s));
+    const double half_width = std::clamp(std::round(half_window_s / (step_s * stride)), 2.0, 6.0);
+    return {static_cast<std::size_t>(stride), static_cast<int>(half_width), step_s * stride};
+}
+
+/// Gravity of a vertical axis in a robot's file with angles of few digits, relative to the largest output.
+constexpr double rounded_tilt = 1e-4;
+
 /// Sets rounding errors to zero, so that they are not taken for a signal.
 MatrixXd without_rounding(const MatrixXd& part, double largest) {
     return (part.array().abs() > 1e-9 * largest).select(part, 0);
@@ -65,10 +82,7 @@ std::optional<CheckedMotion> checked_motion(const Recording& recording) {
     if (recording.row_count() < static_cast<std::size_t>(fewest_rows)) {
         return std::nullopt;
     }
-    const double step_s = median_step_s(recording);
-    const auto stride = static_cast<std::size_t>(std::max(1.0, std::round(row_step_s / step_s)));
-    const int half_width = static_cast<int>(
-        std::clamp(std::round(half_window_s / (step_s * static_cast<double>(stride))), 2.0, 6.0));
+    const auto [stride, half_width, step_s] = derivative_rows(recording);
     const SampledMotion sampled = sampled_motion(thinned(recording, stride), {half_width, 3});
     std::vector<Index> valid;
     for (std::size_t row = 0; row < sampled.valid.size(); ++row) {
@@ -92,6 +106,27 @@ std::optional<CheckedMotion> checked_motion(const Recording& recording) {
                         motion.acceleration(kept, Eigen::all)},
                        sampled.all.outputs(kept, Eigen::all)};
     return result;
+}
+
+double acceleration_noise(const Recording& recording, Index joint) {
+    const auto [stride, half_width, step_s] = derivative_rows(recording);
+    const auto column = static_cast<std::size_t>(joint);
+    double sum = 0;
+    double count = 0;
+    for (std::size_t row = 4; row < recording.row_count(); ++row) {
+        const auto first = recording.gap_before.begin() + static_cast<std::ptrdiff_t>(row) - 3;
+        if (std::all_of(first, first + 4, [](auto gap) { return gap == 0; })) {
+            const auto q = [&](std::size_t back) { return recording.position.row(row - back)[column]; };
+            const double difference = q(0) - 4 * q(1) + 6 * q(2) - 4 * q(3) + q(4);
+            sum += difference * difference;
+            count += 1;
+        }
+    }
+    constexpr double gain = 70; // of the variance, in a fourth difference
+    const double position_variance = sum / (gain * std::max(count, 1.0));
+    const double points = 2 * half_width + 1;
+    const double squares = points * (points * points - 1) * (points * points - 4) / 180;
+    return 2 * std::sqrt(position_variance / squares) / (step_s * step_s);
 }
 
 namespace {
@@ -140,6 +175,11 @@ RigidParts rigid_parts(const Robot& robot, OutputKind kind, const RobotMotion& m
     const MatrixXd inertia = unstacked(regressor * nominal, gravity.cols()) - gravity;
     const double largest = std::max(gravity.cwiseAbs().maxCoeff(), inertia.cwiseAbs().maxCoeff());
     RigidParts parts{without_rounding(gravity, largest), without_rounding(inertia, largest), {}};
+    for (Index k = 0; k < gravity.cols(); ++k) {
+        if (gravity.col(k).cwiseAbs().maxCoeff() < rounded_tilt * largest) {
+            parts.gravity.col(k).setZero();
+        }
+    }
     if (kind != OutputKind::wrench) {
         parts.loaded = loaded_outputs(robot, parts.gravity, regressor.rightCols<10>());
         for (MatrixXd& loaded : parts.loaded) {
@@ -172,6 +212,11 @@ MatrixXd friction_columns(const RobotMotion& motion, Index joint) {
     return columns;
 }
 
+bool travels(const RobotMotion& motion, Index joint) {
+    const auto position = motion.position.col(joint);
+    return position.maxCoeff() - position.minCoeff() >= least_travel;
+}
+
 namespace {
 
 /// Number of reversals after which a joint moves back by a tenth of the least travel. At a low speed the
@@ -194,27 +239,31 @@ int position_turns(const VectorXd& position) {
 
 } // namespace
 
-bool swings(const RobotMotion& motion, Index joint, int turns) {
-    const auto position = motion.position.col(joint);
+std::vector<Index> reversals(const RobotMotion& motion, Index joint) {
     const VectorXd velocity = motion.velocity.col(joint);
     const double moving = 0.1 * velocity.cwiseAbs().maxCoeff();
-    int found = 0;
+    std::vector<Index> rows;
     double direction = 0;
-    for (const double speed : velocity) {
-        if (std::abs(speed) > moving) {
-            found += direction * speed < 0 ? 1 : 0;
-            direction = speed;
+    for (Index row = 0; row < velocity.size(); ++row) {
+        if (std::abs(velocity[row]) > moving) {
+            if (direction * velocity[row] < 0) {
+                rows.push_back(row);
+            }
+            direction = velocity[row];
         }
     }
-    return position.maxCoeff() - position.minCoeff() >= least_travel &&
-           std::min(found, position_turns(position)) >= turns;
+    return rows;
+}
+
+bool swings(const RobotMotion& motion, Index joint, int turns) {
+    return travels(motion, joint) && std::ssize(reversals(motion, joint)) >= turns &&
+           position_turns(motion.position.col(joint)) >= turns;
 }
 
 std::vector<Index> moving_rows(const RobotMotion& motion) {
     Eigen::Array<bool, Eigen::Dynamic, 1> moves = Eigen::Array<bool, Eigen::Dynamic, 1>::Zero(motion.rows());
     for (Index joint = 0; joint < motion.position.cols(); ++joint) {
-        const auto position = motion.position.col(joint);
-        if (position.maxCoeff() - position.minCoeff() >= least_travel) {
+        if (travels(motion, joint)) {
             const VectorXd velocity = motion.velocity.col(joint);
             moves = moves || velocity.array().abs() > turning_speed(velocity);
         }
@@ -246,61 +295,6 @@ MatrixXd smooth_columns(const RobotMotion& motion) {
         result.col(static_cast<Index>(column)) = columns[column];
     }
     return result;
-}
-
-namespace {
-
-/// Returns whether all but one of the parts with visible friction, at least five, have this sign.
-bool parts_agree(const VectorXd& output, const VectorXd& direction, double sign) {
-    constexpr Index parts = 8;
-    constexpr int fewest = 5;
-    const Index rows = output.size() / parts;
-    int shown = 0;
-    int agree = 0;
-    for (Index part = 0; part < parts; ++part) {
-        const auto segment = direction.segment(part * rows, rows);
-        if (segment.squaredNorm() * parts > 0.1 * direction.squaredNorm()) {
-            ++shown;
-            agree += sign * segment.dot(output.segment(part * rows, rows)) > 0 ? 1 : 0;
-        }
-    }
-    return shown >= fewest && agree >= shown - 1;
-}
-
-/// Returns whether the step of Coulomb friction at the reversals has this sign, in addition to a viscous
-/// friction of any sign. Inertia of other joints, which the smooth functions lack, can look like the velocity
-/// of a joint with few reversals, but is continuous at these.
-bool steps(const VectorXd& output, const MatrixXd& smooth, const MatrixXd& friction, double sign) {
-    constexpr double clearly = 0.95; // simulated runs without friction that looked reversed: 0.96 and more
-    const MatrixXd free = (MatrixXd(smooth.rows(), smooth.cols() + 1) << smooth, friction.col(0)).finished();
-    return fit_signed(output, free, sign * friction.col(1)).left <
-           clearly * fit_signed(output, free, -sign * friction.col(1)).left;
-}
-
-} // namespace
-
-FrictionSign friction_sign(const RecordedMotion& recorded, Index joint) {
-    constexpr double clearly = 0.6;
-    constexpr double least_share = 0.01;
-    if (!swings(recorded.motion, joint, certain_turns)) {
-        return FrictionSign::unclear;
-    }
-    const MatrixXd smooth = smooth_columns(recorded.motion);
-    const MatrixXd friction = friction_columns(recorded.motion, joint);
-    const VectorXd output = recorded.outputs.col(joint);
-    const double braking = fit_signed(output, smooth, friction).left;
-    const double driving = fit_signed(output, smooth, -friction).left;
-    if (!(std::min(braking, driving) < clearly * std::max(braking, driving)) ||
-        std::abs(braking - driving) < least_share) {
-        return FrictionSign::unclear;
-    }
-    const double sign = braking < driving ? 1 : -1;
-    const MatrixXd left =
-        left_of_columns((MatrixXd(output.size(), 2) << output, friction.col(1)).finished(), smooth);
-    if (!parts_agree(left.col(0), left.col(1), sign) || !steps(output, smooth, friction, sign)) {
-        return FrictionSign::unclear;
-    }
-    return braking < driving ? FrictionSign::brakes : FrictionSign::drives;
 }
 
 MatrixXd expected_columns(const ArmRecording& arm, const RobotMotion& motion, const RigidParts& parts,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/text/number.hpp"
-#include "tools/setup_check/alternative_readings.hpp"
 #include "tools/setup_check/checks.hpp"
+#include "tools/setup_check/friction_sign.hpp"
+#include "tools/setup_check/rigid_body/alternative_readings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +40,7 @@ bool moves_enough(const ArmRecording& arm, const RigidParts& parts, SetupFault f
     }
     const bool unloaded = parts.gravity.col(joint).isZero(0);
     if (fault == SetupFault::torque_sign && unloaded) {
-        return friction_sign(arm.recorded, joint) == FrictionSign::drives;
+        return friction_sign(arm.recorded, joint).sign == FrictionSign::drives;
     }
     return swings(arm.recorded.motion, joint, unloaded ? certain_turns : likely_turns);
 }
@@ -48,23 +49,17 @@ bool moves_enough(const ArmRecording& arm, const RigidParts& parts, SetupFault f
 bool friction_exchanged(const ArmRecording& arm, Index one, Index other) {
     RecordedMotion exchanged = arm.recorded;
     exchanged.outputs.col(one).swap(exchanged.outputs.col(other));
-    return friction_sign(exchanged, one) == FrictionSign::brakes ||
-           friction_sign(exchanged, other) == FrictionSign::brakes;
+    return friction_sign(exchanged, one).sign == FrictionSign::brakes ||
+           friction_sign(exchanged, other).sign == FrictionSign::brakes;
 }
 
 /// Returns whether a joint reverses several times, and its acceleration is not mainly the noise of its
-/// positions: values at a distance of the derivatives' window have no common noise.
+/// positions.
 bool accelerates(const ArmRecording& arm, Index joint) {
-    constexpr double least_correlation = 1 - badly_explained; // noise alone then explains no bad fit
-    constexpr double window_s = 0.12;
-    const std::vector<double>& time_s = arm.recording.time_s;
-    const VectorXd acceleration = arm.recorded.motion.acceleration.col(joint);
-    const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(acceleration.size());
-    const auto lag = std::min(static_cast<Index>(window_s / step_s) + 1, acceleration.size() - 1);
-    const Index rows = acceleration.size() - lag;
-    const double common = acceleration.head(rows).dot(acceleration.tail(rows));
-    return swings(arm.recorded.motion, joint, certain_turns) &&
-           common > least_correlation * acceleration.head(rows).norm() * acceleration.tail(rows).norm();
+    const RobotMotion& motion = arm.recorded.motion;
+    const double noise = acceleration_noise(arm.recording, joint);
+    const double rms = motion.acceleration.col(joint).norm() / std::sqrt(static_cast<double>(motion.rows()));
+    return swings(motion, joint, certain_turns) && noise * noise < badly_explained * rms * rms;
 }
 
 /// Returns whether gravity, friction or inertia show an exchange. The friction of a motion in one direction
@@ -167,6 +162,7 @@ SetupFinding finding_of_zero(const ArmRecording& arm, BestReading zero, const Ve
         zero.reading.expected =
             "column " + zero.reading.columns +
             ": expected the robot's outputs, found others, closer to those of another zero";
+        zero.reading.may_refuse = !arm.wrench(); // whose fit has no payload
     }
     return finding_of(zero, now, ", or see whether base (--gravity) and links are as in the file");
 }

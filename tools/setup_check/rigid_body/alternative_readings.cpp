@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/setup_check/alternative_readings.hpp"
+#include "tools/setup_check/rigid_body/alternative_readings.hpp"
 
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"

@@ -4,7 +4,7 @@
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
-#include "tools/setup_check/signed_fit.hpp"
+#include "tools/setup_check/rigid_body/signed_fit.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -105,7 +105,7 @@ OutputSizes sizes_by_gravity(const ArmRecording& arm, const RigidParts& parts, c
 
 /// Returns the largest ratio of an output to the rigid body's with the heaviest plausible payload. A payload
 /// can make a wrist's output a hundred times as large as the file's, but no output larger than this.
-double least_factor(const ArmRecording& arm, const RigidParts& parts, const OutputSizes& sizes) {
+double factor_with_payload(const ArmRecording& arm, const RigidParts& parts, const OutputSizes& sizes) {
     const MatrixXd unloaded = parts.gravity + parts.inertia;
     const VectorXd by_file = deviations(unloaded);
     VectorXd largest = by_file;
@@ -153,12 +153,13 @@ SetupFindings check_output_size(const ArmRecording& arm, const RigidParts& parts
         return {};
     }
     // a payload or a rotor can dominate some joints, but never makes an output much smaller
-    const bool payload = factor >= too_large && least_factor(arm, parts, sizes) < suspicious;
+    const bool payload = factor >= too_large && factor_with_payload(arm, parts, sizes) < suspicious;
     const bool certain = !payload && (several || arm.wrench() || arm.counted() == 1 || factor < too_small);
     const Severity severity = certain ? Severity::mistake : Severity::warning;
     const std::string columns = listed(arm.recording.output.names);
     if (factor > too_small || arm.wrench()) {
-        return {{SetupFault::output_unit, severity, columns, unit_text(arm, factor)}};
+        return {{SetupFault::output_unit, severity, columns,
+                 unit_text(arm, factor) + (payload ? ", or a payload that the file lacks" : "")}};
     }
     if (arm.gains_known && factor * largest_gear_ratio > 1) {
         return {{SetupFault::output_unit, severity, columns, other_scale_text(arm, factor)}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/setup_check/signed_fit.hpp"
+#include "tools/setup_check/rigid_body/signed_fit.hpp"
 
 #include "tools/base/numerics/linear_algebra.hpp"
 

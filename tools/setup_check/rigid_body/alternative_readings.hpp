@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/setup_check/rigid_comparison.hpp"
+#include "tools/setup_check/rigid_body/rigid_comparison.hpp"
 #include "tools/setup_check/setup_finding.hpp"
 
 #include <Eigen/Core>
@@ -21,8 +21,7 @@ struct Reading {
     Eigen::VectorXd left;                ///< remaining share of each output's variance
 };
 
-/// Returns the share of each output's variance that the set-up leaves, over the rows in which its joint
-/// moves.
+/// Returns the share of each output's variance that the set-up leaves, over the moving_rows().
 Eigen::VectorXd shares_left(const ArmRecording& arm, const RigidParts& parts);
 
 /// Returns the alternatives to the set-up: signs, exchanges, gravity upside down and degrees. `now`: the

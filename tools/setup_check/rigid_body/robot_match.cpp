@@ -3,7 +3,7 @@
 
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
-#include "tools/setup_check/signed_fit.hpp"
+#include "tools/setup_check/rigid_body/signed_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rows in which a joint moves. Static friction may hold any torque up to the break-away torque, a different
-/// one in each posture, and smooth functions of a few postures would describe these.
-std::vector<Index> moving_rows(const RobotMotion& motion, Index joint) {
+/// Rows in which a joint is faster than a tenth of its largest speed. Static friction may hold any torque up
+/// to the break-away torque, a different one in each posture, and smooth functions of a few postures would
+/// describe these.
+std::vector<Index> fast_rows(const RobotMotion& motion, Index joint) {
     constexpr double share = 0.1;
     const VectorXd speed = motion.velocity.col(joint).cwiseAbs();
     const double least = share * speed.maxCoeff();
@@ -62,7 +63,7 @@ std::optional<Comparison> compare(const ArmRecording& arm, const RigidParts& par
                                   Index joint) {
     constexpr double least_free = 0.5;
     const RobotMotion& motion = arm.recorded.motion;
-    const std::vector<Index> rows = moving_rows(motion, joint);
+    const std::vector<Index> rows = fast_rows(motion, joint);
     const double free_share =
         1 - static_cast<double>(smooth.cols()) / std::max(independent_rows(arm, rows.size()), 1.0);
     if (free_share < least_free) {
