@@ -50,10 +50,14 @@ void add_model(CLI::App& command, LoopOptions& options) {
         .add_option("--contact-calibration", options.limits.contact_calibration_s,
                     "With --on-contact: measures the limits of contacts during the first S seconds with "
                     "motion. Nobody may touch the arm then: the limits are up to ten times the model's. "
-                    "Default: "
-                    "the model's limits from the start")
+                    "Default: the model's limits from the start")
         ->check(number_in(30, 3600))
         ->type_name("S");
+    command
+        .add_option("--save-calibrated", options.calibrated,
+                    "With --contact-calibration: writes the model with the measured limits of contacts here, "
+                    "for --model of the next start")
+        ->type_name("M.json");
 }
 
 /// Adds the options of the loop's limits.

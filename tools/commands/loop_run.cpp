@@ -41,7 +41,8 @@ struct LoopParts {
 
 LoopParts read_parts(const LoopOptions& options) {
     // A run may restore and save the learned state in the same file.
-    check_outputs({options.saved}, {options.robot, options.scenario, options.model, options.bus});
+    check_outputs({options.saved, options.calibrated},
+                  {options.robot, options.scenario, options.model, options.bus});
     LoopParts parts{read_scenario_robot(options.robot, options.scenario), {}, {}, {}};
     parts.scenario = read_scenario(options.scenario, parts.robot);
     if (!options.model.empty()) {
@@ -128,6 +129,19 @@ void save_learned(const LoopOptions& options, const ControlLoop& loop, FileSet& 
     }
 }
 
+/// Writes the model with the limits of contacts that the loop has measured.
+void save_calibrated(const LoopOptions& options, const LoopParts& parts, const ControlLoop& loop,
+                     FileSet& files) {
+    const LearnedFeedForward* const learned = loop.feed_forward().learned();
+    if (options.calibrated.empty() || learned == nullptr || !learned->contact_calibration()->finished()) {
+        return;
+    }
+    TrainedModel model = parts.model->model;
+    model.contact = measured_contact(model.contact, *learned->contact_calibration(),
+                                     options.limits.contact_rate_per_hour.value_or(contact_rate_per_hour));
+    files.add(options.calibrated, model_to_json(model) + '\n');
+}
+
 /// Sources of torque in addition to the feedback and the nominal rigid body.
 struct ComparedController {
     std::string name;
@@ -191,6 +205,7 @@ SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options,
     show_changes(name, loop.loop(), changes);
     if (controller.name == compared_controllers(options).back().name) {
         save_learned(options, loop.loop(), files);
+        save_calibrated(options, parts, loop.loop(), files);
     }
     SimulatedRun result{std::nullopt, loop_json(name, loop.loop(), peaks)};
     result.loop["reactions"] = reactions_json(loop.reactions());
@@ -246,6 +261,7 @@ int run_on_bus(const LoopOptions& options) {
     const std::string name = compared_controllers(options).back().name;
     FileSet files;
     save_learned(options, *loop, files);
+    save_calibrated(options, parts, *loop, files);
     add_recording(options, name, log.recording, files);
     std::vector<RecordedChanges> changes;
     show_changes(name, *loop, changes);
@@ -277,6 +293,8 @@ void check_usage(const LoopOptions& options) {
            "loop: --contact-rate: expected --on-contact, found none");
     refuse(options.on_contact.empty() && options.limits.contact_calibration_s > 0,
            "loop: --contact-calibration: expected --on-contact, found none");
+    refuse(!options.calibrated.empty() && !(options.limits.contact_calibration_s > 0),
+           "loop: --save-calibrated: expected --contact-calibration, found none");
     refuse(options.duration_s > 0 && options.limits.contact_calibration_s >= options.duration_s,
            "loop: --contact-calibration: expected less than --duration, found no less");
     refuse(!model && !(options.restored.empty() && options.saved.empty()),

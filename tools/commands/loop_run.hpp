@@ -13,6 +13,7 @@ namespace dfdyn::tools {
 struct LoopOptions {
     std::filesystem::path robot, scenario, model, bus, folder;
     std::filesystem::path restored, saved; ///< snapshots of the learned state
+    std::filesystem::path calibrated;      ///< the model with measured limits of contacts
     std::string interface;
     bool simulate = false;
     bool from_prior = false;

@@ -18,6 +18,7 @@ namespace contact_calibration_test {
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 using Catch::Matchers::ContainsSubstring;
+using Catch::Matchers::WithinRel;
 
 /// Seven joints that move for a second between two postures, and rest for a second and a half.
 faulty_loop_test::Arm resting_arm() {
@@ -44,13 +45,14 @@ const LoopModel& model_of(const faulty_loop_test::Arm& arm) {
     return model;
 }
 
-/// Runs the arm with the reaction `hold` and returns its loop.
+/// Runs the arm with the reaction `hold` and passes its loop and summary to `use`.
 template <class Use>
-void run(const faulty_loop_test::Arm& arm, double calibration_s, double duration_s, Use use) {
+void run(const faulty_loop_test::Arm& arm, const LoopModel& model, double calibration_s, double duration_s,
+         Use use) {
     LoopLimits limits;
     limits.on_contact = FindingAction::hold;
     limits.contact_calibration_s = calibration_s;
-    ClosedLoop loop(arm.robot, arm.scenario, "test", &model_of(arm), nullptr, limits);
+    ClosedLoop loop(arm.robot, arm.scenario, "test", &model, nullptr, limits);
     loop.run_to(duration_s, [](const ClosedLoopInstant&) {});
     std::ostringstream summary;
     print_loop(summary, loop.loop());
@@ -61,12 +63,12 @@ void run(const faulty_loop_test::Arm& arm, double calibration_s, double duration
 TEST_CASE("a loop that measures its limits first reacts to pushes and not to its own stops", "[contacts]") {
     constexpr double push_s = 75.7;
     faulty_loop_test::Arm arm = resting_arm();
-    run(arm, 0, 10, [](const ClosedLoop& loop, const std::string&) {
+    run(arm, model_of(arm), 0, 10, [](const ClosedLoop& loop, const std::string&) {
         CHECK_FALSE(loop.loop().actions().empty()); // the limits of the commissioning run
     });
     arm.scenario.faults =
         faults_of(R"([{"kind": "push", "joint": 2, "torque_nm": 4, "from_s": 75.7, "for_s": 0.5}])", 7);
-    run(arm, 30, push_s + 1, [&](const ClosedLoop& loop, const std::string& summary) {
+    run(arm, model_of(arm), 30, push_s + 1, [&](const ClosedLoop& loop, const std::string& summary) {
         REQUIRE(loop.loop().actions().size() == 1);
         CHECK(loop.loop().actions().front().time_s > push_s);
         CHECK(loop.loop().actions().front().time_s < push_s + 0.1);
@@ -75,10 +77,30 @@ TEST_CASE("a loop that measures its limits first reacts to pushes and not to its
 }
 
 TEST_CASE("the summary of a loop gives the motion that its limits of contacts still need", "[contacts]") {
-    run(resting_arm(), 30, 10, [](const ClosedLoop& loop, const std::string& summary) {
+    const faulty_loop_test::Arm arm = resting_arm();
+    run(arm, model_of(arm), 30, 10, [](const ClosedLoop& loop, const std::string& summary) {
         CHECK(loop.loop().actions().empty());
         CHECK_THAT(summary, ContainsSubstring("contacts: not calibrated, 2"));
     });
+}
+
+TEST_CASE("a model with the limits that a loop has measured reports no contact at its next start",
+          "[contacts]") {
+    const faulty_loop_test::Arm arm = resting_arm();
+    LoopModel calibrated = model_of(arm);
+    run(arm, model_of(arm), 30, 80, [&](const ClosedLoop& loop, const std::string&) {
+        const auto* const calibration = loop.loop().feed_forward().learned()->contact_calibration();
+        REQUIRE(calibration->finished());
+        constexpr double per_hour = 3;
+        const ContactModel limits =
+            contact_at_rate(measured_contact(model_of(arm).model.contact, *calibration, per_hour), per_hour);
+        CHECK_THAT(limits.limit[0], WithinRel(double{calibration->limits()[0].limit[0]}, 1e-6));
+        CHECK_THAT(limits.relative[6], WithinRel(double{calibration->limits()[6].relative}, 1e-6));
+        calibrated.model.contact =
+            measured_contact(model_of(arm).model.contact, *calibration, contact_rate_per_hour);
+    });
+    run(arm, calibrated, 0, 40,
+        [](const ClosedLoop& loop, const std::string&) { CHECK(loop.loop().actions().empty()); });
 }
 
 } // namespace contact_calibration_test

@@ -221,6 +221,15 @@ TEST_CASE("models that differ in one number have different identities") {
     CHECK(model_identity(model) != identity);
 }
 
+TEST_CASE("what a model has learned is that of the model with other limits of contacts, too") {
+    std::mt19937_64 engine(1);
+    TrainedModel model = small_model(engine, InputKind::DFR);
+    const auto identity = model_identity(model);
+    model.contact.limit.assign(3 * model.outputs.names.size(), 2.5);
+    model.contact.usual.assign(3 * model.outputs.names.size(), 0.5);
+    CHECK(model_identity(model) == identity);
+}
+
 TEST_CASE("every truncation of a model file is rejected with one line") {
     std::mt19937_64 engine(1);
     const std::string text = model_to_json(small_model(engine, InputKind::DFSR));

@@ -293,7 +293,9 @@ TrainedModel read_model(const std::filesystem::path& path) {
 }
 
 std::uint32_t model_identity(const TrainedModel& model) {
-    const std::string text = model_to_json(model);
+    TrainedModel without_contact = model;
+    without_contact.contact = {};
+    const std::string text = model_to_json(without_contact);
     return crc32(std::as_bytes(std::span(text)));
 }
 

@@ -24,7 +24,8 @@ TrainedModel model_from_json(const std::string& text, const std::string& source)
 /// Reads a model.json. Throws InputError as above, or if the file cannot be read.
 TrainedModel read_model(const std::filesystem::path& path);
 
-/// Returns a number that distinguishes models: the CRC-32 of the content of model.json. Snapshots contain it.
+/// Returns a number that distinguishes models: the CRC-32 of the content of model.json without the limits of
+/// contacts, of which nothing learned depends. Snapshots contain it.
 std::uint32_t model_identity(const TrainedModel& model);
 
 } // namespace dfdyn::tools

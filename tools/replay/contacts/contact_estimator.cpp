@@ -125,9 +125,17 @@ ContactModel scaled_contact(ContactModel contact, double factor) {
     return contact;
 }
 
+namespace {
+
+/// Factor of a model's limits for a rate of false contacts.
+double scale_at_rate(const ContactModel& contact, double per_hour) {
+    return std::max(1 - contact.rate_slope * std::log(per_hour / contact_rate_per_hour), least_scale);
+}
+
+} // namespace
+
 ContactModel contact_at_rate(const ContactModel& contact, double per_hour) {
-    const double scale = 1 - contact.rate_slope * std::log(per_hour / contact_rate_per_hour);
-    return scaled_contact(contact, std::max(scale, least_scale));
+    return scaled_contact(contact, scale_at_rate(contact, per_hour));
 }
 
 ContactModel contact_limits(const TrainedModel& model, std::optional<double> per_hour,
@@ -144,6 +152,18 @@ ContactModel contact_limits(const TrainedModel& model, std::optional<double> per
                          "`dfdyn train` writes, found a model of an older version");
     }
     return contact_at_rate(model.contact, *per_hour);
+}
+
+ContactModel measured_contact(ContactModel trained, const ContactWatch::Calibration& calibration,
+                              double per_hour) {
+    const ContactLimits<float>* const measured = calibration.limits();
+    for (std::size_t i = 0; i < trained.limit.size(); ++i) {
+        trained.limit[i] = measured[i / joint_motion_count].limit[i % joint_motion_count];
+    }
+    for (std::size_t joint = 0; joint < trained.relative.size(); ++joint) {
+        trained.relative[joint] = measured[joint].relative;
+    }
+    return scaled_contact(trained, 1 / scale_at_rate(trained, per_hour));
 }
 
 std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& tick) {

@@ -84,6 +84,11 @@ ContactModel contact_at_rate(const ContactModel& contact, double per_hour);
 ContactModel contact_limits(const TrainedModel& model, std::optional<double> per_hour,
                             const std::string& source);
 
+/// Returns `trained` with the limits of a finished calibration: contact_at_rate() gives the measured ones for
+/// `per_hour`, the rate of the calibration.
+ContactModel measured_contact(ContactModel trained, const ContactWatch::Calibration& calibration,
+                              double per_hour);
+
 /// Returns measured - predicted of each output. Requires both.
 std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& tick);
 
