@@ -268,9 +268,10 @@ std::vector<Index> moving_rows(const RobotMotion& motion) {
             moves = moves || velocity.array().abs() > turning_speed(velocity);
         }
     }
+    const bool stationary = !moves.any();
     std::vector<Index> rows;
     for (Index row = 0; row < moves.size(); ++row) {
-        if (moves[row] || !moves.any()) {
+        if (stationary || moves[row]) {
             rows.push_back(row);
         }
     }
