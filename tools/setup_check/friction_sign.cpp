@@ -98,10 +98,12 @@ FrictionEvidence friction_sign(const RecordedMotion& recorded, Index joint) {
     const MatrixXd friction = friction_columns(recorded.motion, joint);
     const VectorXd output = recorded.outputs.col(joint);
     const BothSigns found = compare(output, smooth, friction);
+    if (!found.clear()) {
+        return {};
+    }
     const double sign = found.sign();
     const MatrixXd left = left_of_columns(joined(output, friction.col(1)), smooth);
-    if (!found.clear() || !parts_agree(left.col(0), left.col(1), sign) ||
-        !steps(output, smooth, friction, sign)) {
+    if (!parts_agree(left.col(0), left.col(1), sign) || !steps(output, smooth, friction, sign)) {
         return {};
     }
     return {sign > 0 ? FrictionSign::brakes : FrictionSign::drives,

@@ -26,8 +26,9 @@ struct FrictionEvidence {
 ///   sign;
 /// - the step of Coulomb friction has this sign, in addition to a viscous friction of any sign.
 ///
-/// It is certain if the second also holds beside the products of all velocities, with at least twice as many
-/// rows as functions. Cost: T (8 n)^2; for a joint with friction T (8 n + n^2 / 2)^2.
+/// It is certain if the second condition also holds in a fit that has the products of all velocities, too,
+/// and at least twice as many rows as functions. Cost: T (8 n)^2; for a joint with friction T (8 n + n^2 /
+/// 2)^2.
 FrictionEvidence friction_sign(const RecordedMotion& recorded, Eigen::Index joint);
 
 } // namespace dfdyn::tools

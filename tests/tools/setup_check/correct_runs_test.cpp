@@ -21,14 +21,6 @@ namespace correct_runs_test {
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 
-std::string mistakes_in(const Recording& recording, const SetupQuestion& question) {
-    std::string mistakes;
-    for (const SetupFinding& finding : check_setup(recording, question)) {
-        mistakes += finding.severity == Severity::mistake ? finding.text + "\n" : "";
-    }
-    return mistakes;
-}
-
 /// Checks that runs of a kind are accepted, without and with the robot.
 void check_accepted(const Robot& robot, const RunKind& kind, int runs, std::mt19937_64& engine) {
     for (int run = 0; run < runs; ++run) {

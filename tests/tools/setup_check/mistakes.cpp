@@ -149,4 +149,16 @@ std::vector<Cut> cuts_of(const Recording& recording) {
             {"every fifth", cut(recording, 0, rows, 5)}};
 }
 
+std::string mistakes_of(const tools::SetupFindings& findings) {
+    std::string texts;
+    for (const tools::SetupFinding& finding : findings) {
+        texts += finding.severity == tools::Severity::mistake ? finding.text + "\n" : "";
+    }
+    return texts;
+}
+
+std::string mistakes_in(const Recording& recording, const tools::SetupQuestion& question) {
+    return mistakes_of(check_setup(recording, question));
+}
+
 } // namespace dfdyn::tests

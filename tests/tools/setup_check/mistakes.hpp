@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/base/recording/recording.hpp"
+#include "tools/setup_check/setup_check.hpp"
 #include "tools/setup_check/setup_finding.hpp"
 
 #include <cstddef>
@@ -20,6 +21,10 @@ struct Mistake {
 
 /// Common mistakes. Mistakes of one joint affect joint 2 if there are several. `outputs` selects mA or mN·m.
 std::vector<Mistake> classic_mistakes(std::size_t joints, tools::OutputKind outputs);
+
+/// The texts of all findings that are mistakes, one per line.
+std::string mistakes_of(const tools::SetupFindings& findings);
+std::string mistakes_in(const tools::Recording& recording, const tools::SetupQuestion& question);
 
 /// Every `stride`-th row from `first` to `last` (excluded).
 tools::Recording cut(const tools::Recording& recording, std::size_t first, std::size_t last,

@@ -26,19 +26,6 @@ Recording currents(const std::string& file) {
     return read_recording(data + "/" + file, options);
 }
 
-/// The texts of all mistakes, one per line.
-std::string mistakes_of(const SetupFindings& findings) {
-    std::string texts;
-    for (const SetupFinding& finding : findings) {
-        texts += finding.severity == Severity::mistake ? finding.text + "\n" : "";
-    }
-    return texts;
-}
-
-std::string mistakes_in(const Recording& recording, const SetupQuestion& question) {
-    return mistakes_of(check_setup(recording, question));
-}
-
 TEST_CASE("a correct recording is accepted however it is cut with and without a robot") {
     const Robot robot = ur5();
     const std::string file = GENERATE("ur5_kufieta/Movement_No5_Acc_slow_no_disturbance.csv",

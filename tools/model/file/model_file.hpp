@@ -25,7 +25,7 @@ TrainedModel model_from_json(const std::string& text, const std::string& source)
 TrainedModel read_model(const std::filesystem::path& path);
 
 /// Returns a number that distinguishes models: the CRC-32 of the content of model.json without the limits of
-/// contacts, of which nothing learned depends. Snapshots contain it.
+/// contacts, on which nothing learned depends. Snapshots contain it.
 std::uint32_t model_identity(const TrainedModel& model);
 
 } // namespace dfdyn::tools

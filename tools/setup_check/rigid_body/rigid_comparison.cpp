@@ -212,12 +212,26 @@ MatrixXd friction_columns(const RobotMotion& motion, Index joint) {
     return columns;
 }
 
+namespace {
+
 bool travels(const RobotMotion& motion, Index joint) {
     const auto position = motion.position.col(joint);
     return position.maxCoeff() - position.minCoeff() >= least_travel;
 }
 
-namespace {
+/// Number of reversals from a tenth of the largest speed to the opposite.
+int velocity_turns(const VectorXd& velocity) {
+    const double moving = 0.1 * velocity.cwiseAbs().maxCoeff();
+    int found = 0;
+    double direction = 0;
+    for (const double speed : velocity) {
+        if (std::abs(speed) > moving) {
+            found += direction * speed < 0 ? 1 : 0;
+            direction = speed;
+        }
+    }
+    return found;
+}
 
 /// Number of reversals after which a joint moves back by a tenth of the least travel. At a low speed the
 /// noise of the positions reverses the velocity.
@@ -239,24 +253,8 @@ int position_turns(const VectorXd& position) {
 
 } // namespace
 
-std::vector<Index> reversals(const RobotMotion& motion, Index joint) {
-    const VectorXd velocity = motion.velocity.col(joint);
-    const double moving = 0.1 * velocity.cwiseAbs().maxCoeff();
-    std::vector<Index> rows;
-    double direction = 0;
-    for (Index row = 0; row < velocity.size(); ++row) {
-        if (std::abs(velocity[row]) > moving) {
-            if (direction * velocity[row] < 0) {
-                rows.push_back(row);
-            }
-            direction = velocity[row];
-        }
-    }
-    return rows;
-}
-
 bool swings(const RobotMotion& motion, Index joint, int turns) {
-    return travels(motion, joint) && std::ssize(reversals(motion, joint)) >= turns &&
+    return travels(motion, joint) && velocity_turns(motion.velocity.col(joint)) >= turns &&
            position_turns(motion.position.col(joint)) >= turns;
 }
 

@@ -77,12 +77,6 @@ Eigen::VectorXd friction_direction(const Eigen::VectorXd& velocity);
 /// neighbours, and the accelerations, T x (at most 8 n).
 Eigen::MatrixXd smooth_columns(const RobotMotion& motion);
 
-/// Returns whether a joint moves by at least 0.1 rad (m).
-bool travels(const RobotMotion& motion, Eigen::Index joint);
-
-/// Returns the first row after each reversal of a joint, from a tenth of its largest speed to the opposite.
-std::vector<Eigen::Index> reversals(const RobotMotion& motion, Eigen::Index joint);
-
 /// Returns whether a joint moves by at least 0.1 rad (m) and reverses at least `turns` times, from a tenth of
 /// its largest speed to the opposite, and by 0.01 rad (m) or more.
 bool swings(const RobotMotion& motion, Eigen::Index joint, int turns);

@@ -104,12 +104,15 @@ SignedFit fit_signed(const VectorXd& output, const MatrixXd& free, const MatrixX
     if (!(std::sqrt(variance) > dependent * output.norm())) {
         return result;
     }
-    MatrixXd columns = left_of_columns(not_negative, free);
-    const VectorXd target = left_of_columns(output, free);
+    MatrixXd columns(output.size(), not_negative.cols() + 1);
+    columns.leftCols(not_negative.cols()) = not_negative;
+    columns.rightCols<1>() = output;
+    columns = left_of_columns(columns, free);
+    const VectorXd target = columns.rightCols<1>();
     result.left = target.squaredNorm() / variance;
     std::vector<Index> usable;
     std::vector<double> norms;
-    for (Index column = 0; column < columns.cols(); ++column) {
+    for (Index column = 0; column < not_negative.cols(); ++column) {
         const double norm = columns.col(column).norm();
         if (norm > dependent * not_negative.col(column).norm()) {
             columns.col(column) /= norm;
