@@ -208,8 +208,8 @@ std::vector<Recording> read_recordings(const TrainOptions& options, OutputKind o
     columns.joint_names = robot ? names_of_joints(*robot) : std::vector<std::string>{};
     columns.prismatic = robot ? prismatic_joints(*robot) : std::vector<bool>{};
     columns.velocity = columns.acceleration = // for the features, and for the rigid body with friction
-        training.physics ||
-        (sees_derivatives(training) && training.derivatives != DerivativeSource::estimated);
+        training.physics || (input_description(training.options.input).uses_derivatives() &&
+                             training.derivatives != DerivativeSource::estimated);
     return options.recordings.read_each_once(columns);
 }
 

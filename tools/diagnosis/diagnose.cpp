@@ -44,10 +44,12 @@ Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOpt
     if (options.outputs == OutputKind::motor_current && options.torque_gains.size() > 0) {
         return options.torque_gains;
     }
-    const auto recorded = [&] { return RecordedMotion{signals.measured.motion, signals.measured.outputs}; };
+    const auto estimate = [&] {
+        return rough_torque_gains(signals.robot, {signals.measured.motion, signals.measured.outputs},
+                                  signals.sign_velocity.maxCoeff());
+    };
     const std::vector<double> gains =
-        output_gains(torque_gains(signals.robot, options.outputs, options.torque_constants, recorded,
-                                  signals.sign_velocity.maxCoeff()),
+        output_gains(torque_gains(signals.robot, options.outputs, options.torque_constants, estimate),
                      static_cast<std::size_t>(signals.outputs()));
     return Eigen::Map<const Eigen::VectorXd>(gains.data(), signals.outputs());
 }

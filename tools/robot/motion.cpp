@@ -2,9 +2,11 @@
 #include "tools/robot/motion.hpp"
 
 #include "tools/base/recording/columns_matrix.hpp"
+#include "tools/base/recording/sample_grid.hpp"
 #include "tools/base/text/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -51,6 +53,12 @@ RobotMotion random_motion(const Robot& robot, Eigen::Index rows, std::uint64_t s
         }
     }
     return motion;
+}
+
+ZeroPhaseWindow rigid_body_window(std::span<const Recording> recordings) {
+    constexpr long least_samples = 3;
+    const long samples = std::lround(rigid_body_window_s / sample_period_s(recordings));
+    return {static_cast<int>(std::max(samples, least_samples)), 3};
 }
 
 SampledMotion sampled_motion(const Recording& recording, const ZeroPhaseWindow& window) {

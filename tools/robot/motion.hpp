@@ -24,6 +24,15 @@ struct RobotMotion {
 /// give equal states with every standard library.
 RobotMotion random_motion(const Robot& robot, Eigen::Index rows, std::uint64_t seed);
 
+/// Half of the window for derivatives (s); at least three samples. On the UR5 recordings No3, No5 and No6,
+/// windows of 24 ms and 80 ms changed the errors by less than 5 % (geometric mean over the outputs): those of
+/// the robot file's inertia and of the inertia identified on No6.
+inline constexpr double rigid_body_window_s = 0.04;
+
+/// Returns the window for the derivatives of a rigid body's motion: `rigid_body_window_s`, at least three
+/// samples, on both sides. Throws InputError for fewer than two rows.
+ZeroPhaseWindow rigid_body_window(std::span<const Recording> recordings);
+
 /// Motion and outputs of a recording.
 struct RecordedMotion {
     RobotMotion motion;

@@ -8,6 +8,7 @@
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/model/run_time/host_model.hpp"
 #include "tools/model/structure.hpp"
+#include "tools/robot/motion.hpp"
 #include "tools/training/data/lag_spacing.hpp"
 #include "tools/training/data/recorded_data.hpp"
 #include "tools/training/data/stored_motion.hpp"
@@ -61,11 +62,12 @@ struct PhysicsColumnsOf {
     std::vector<double> output_gain;
 };
 
-std::vector<TorqueGain> gains_for(const RobotPhysics& robot, OutputKind outputs, const TrainingData& data) {
-    const auto recorded = [&] {
-        return RecordedMotion{{data.positions, data.velocities, data.accelerations}, data.outputs};
-    };
-    return torque_gains(robot.robot, outputs, robot.torque_constants, recorded, robot.sign_velocity);
+std::vector<TorqueGain> gains_for(const RobotPhysics& robot, OutputKind outputs,
+                                  std::span<const Recording> recordings) {
+    return torque_gains(robot.robot, outputs, robot.torque_constants, [&] {
+        return estimate_torque_gains(robot.robot, recorded_motion(recordings, rigid_body_window(recordings)),
+                                     robot.sign_velocity);
+    });
 }
 
 PhysicsColumnsOf physics_columns_of(const RobotPhysics& robot, OutputKind outputs,
@@ -158,15 +160,11 @@ int lags_of(const TrainedModel& model) {
 
 } // namespace
 
-bool sees_derivatives(const ModelTraining& training) {
-    return input_description(training.options.input).uses_derivatives() ||
-           (training.physics && training.physics->torque_constants.empty());
-}
-
 PreparedTraining prepare_training(std::span<const Recording> recordings, const ModelTraining& training) {
     PreparedTraining prepared;
+    prepared.recordings = recordings;
     prepared.data = gather_training_data(recordings);
-    if (!sees_derivatives(training)) {
+    if (!input_description(training.options.input).uses_derivatives()) {
         return prepared;
     }
     const bool measured = have_derivatives(recordings);
@@ -181,11 +179,9 @@ PreparedTraining prepare_training(std::span<const Recording> recordings, const M
         return prepared;
     }
     prepared.position_noise_bound = estimate_position_noise_bound(prepared.data);
-    const int lags = dense_lags({training.options.lags, training.options.every});
-    // Input STD needs the derivatives that the firmware computes; torque constants need only accurate ones.
-    const bool as_input = input_description(training.options.input).uses_derivatives();
-    estimate_derivatives(prepared.data, recordings, lags, prepared.position_noise_bound,
-                         as_input ? 1 : derivative_spacing(lags));
+    estimate_derivatives(prepared.data, recordings,
+                         dense_lags({training.options.lags, training.options.every}),
+                         prepared.position_noise_bound);
     return prepared;
 }
 
@@ -204,7 +200,7 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     }
     const RobotPhysics& robot = *training.physics;
     check_joints(robot.robot, prepared.data);
-    std::vector<TorqueGain> gains = gains_for(robot, outputs, prepared.data);
+    std::vector<TorqueGain> gains = gains_for(robot, outputs, prepared.recordings);
     check_estimated_gains(gains);
     const auto output_count = static_cast<std::size_t>(prepared.data.outputs.cols());
     const PhysicsColumnsOf columns = physics_columns_of(robot, outputs, output_gains(gains, output_count));

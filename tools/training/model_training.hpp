@@ -35,13 +35,10 @@ struct ModelTraining {
     DerivativeSource derivatives = DerivativeSource::automatic;
 };
 
-/// Returns whether the training uses velocities and accelerations: for input STD, and to estimate torque
-/// constants.
-bool sees_derivatives(const ModelTraining& training);
-
 /// Training data with the derivatives that the training needs.
 struct PreparedTraining {
-    TrainingData data;
+    std::span<const Recording> recordings; ///< must exist as long as this
+    TrainingData data;                     ///< of all recordings
     Derivatives derivatives = Derivatives::estimated;
     double position_noise_bound = 0;
 };

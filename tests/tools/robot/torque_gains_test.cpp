@@ -4,8 +4,11 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tests/tools/support/append_row.hpp"
 #include "tools/model/chain_model.hpp"
 #include "tools/robot/firmware_chain.hpp"
+#include "tools/simulation/simulation.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
 
 #include <cmath>
@@ -61,6 +64,58 @@ TEST_CASE("gains are recovered from currents with friction and offsets") {
     }
 }
 
+TEST_CASE("rotors do not change the gains") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = random_robot(engine, 3);
+    const std::vector<double> gains{0.11, 0.09, 0.13};
+    RecordedMotion data = currents(engine, robot, gains);
+    data.outputs += 0.2 * data.motion.acceleration;
+    const auto found = estimate_torque_gains(robot, data, sign_velocity);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(found[i].gain == Approx(gains[i]).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("a weight that friction bears at rest does not change the gains") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = random_robot(engine, 3);
+    const std::vector<double> gains{0.11, 0.09, 0.13};
+    RecordedMotion data = currents(engine, robot, gains);
+    const RecordedMotion rest = currents(engine, robot, gains);
+    data.motion.velocity.topRows(200).setZero();
+    data.outputs.topRows(200) = 0.3 * rest.outputs.topRows(200);
+    const auto found = estimate_torque_gains(robot, data, sign_velocity);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(found[i].gain == Approx(gains[i]).epsilon(1e-6));
+    }
+}
+
+/// A simulated UR5 with bristle friction, rotors and quantised positions: 60 s of a sum of sines.
+RecordedMotion simulated_currents(const Robot& robot, const Scenario& scenario) {
+    Recording recording;
+    recording.position.names = joint_names("q", robot.joints.size());
+    recording.output.names = output_names(OutputKind::motor_current, robot.joints.size());
+    Simulation simulation(robot, scenario);
+    for (std::size_t row = 0; row < scenario.recording.samples; ++row) {
+        const SimulatedSample sample = simulation.next();
+        dfdyn::tests::append_row(recording, sample.time_s, sample.position,
+                                 scenario.torque_sensor.current(sample.torque));
+    }
+    return recorded_motion({&recording, 1}, rigid_body_window({&recording, 1}));
+}
+
+TEST_CASE("torque constants of a simulated arm are found within 10 % for its arm and 35 % for its wrist") {
+    const Robot robot = dfdyn::tests::ur5();
+    Scenario scenario = read_scenario(DFDYN_TEST_DATA_DIR "/scenarios/ur5_multisine.json", robot);
+    scenario.seed = dfdyn::tests::seed();
+    const auto found = estimate_torque_gains(robot, simulated_currents(robot, scenario), sign_velocity);
+    for (std::size_t joint = 0; joint < found.size(); ++joint) {
+        CAPTURE(joint, dfdyn::tests::seed());
+        const double truth = (*scenario.torque_sensor.torque_constant)[static_cast<Index>(joint)];
+        CHECK(1 / found[joint].gain == Approx(truth).epsilon(joint < 3 ? 0.1 : 0.35));
+    }
+}
+
 TEST_CASE("a joint without nominal torque gets the median of the other gains") {
     DFDYN_SEEDED_ENGINE(engine);
     Robot robot = random_robot(engine, 4);
@@ -98,12 +153,11 @@ TEST_CASE("currents opposite to the torques at all joints give gains of one") {
 TEST_CASE("given torque constants give their inverses, and the recording is not read") {
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = random_robot(engine, 2);
-    const auto unread = []() -> RecordedMotion { throw std::logic_error("read"); };
-    const auto gains =
-        torque_gains(robot, OutputKind::motor_current, std::vector{8.0, 10.0}, unread, sign_velocity);
+    const auto unread = []() -> std::vector<TorqueGain> { throw std::logic_error("read"); };
+    const auto gains = torque_gains(robot, OutputKind::motor_current, std::vector{8.0, 10.0}, unread);
     CHECK(output_gains(gains, 2) == std::vector{1 / 8.0, 1 / 10.0});
     CHECK(gains[0].source == TorqueGain::Source::given);
-    CHECK_THROWS_WITH(torque_gains(robot, OutputKind::motor_current, std::vector{8.0}, unread, sign_velocity),
+    CHECK_THROWS_WITH(torque_gains(robot, OutputKind::motor_current, std::vector{8.0}, unread),
                       "--torque-constants: expected 2, one per joint, found 1");
 }
 
@@ -127,11 +181,11 @@ TEST_CASE("without torque constants the gains are estimated, and other outputs h
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = random_robot(engine, 2);
     const RecordedMotion data = currents(engine, robot, {0.11, 0.09});
-    const auto recorded = [&] { return data; };
-    const auto gains = torque_gains(robot, OutputKind::motor_current, {}, recorded, sign_velocity);
+    const auto estimate = [&] { return estimate_torque_gains(robot, data, sign_velocity); };
+    const auto gains = torque_gains(robot, OutputKind::motor_current, {}, estimate);
     REQUIRE(gains.size() == 2);
-    CHECK(gains[1].gain == estimate_torque_gains(robot, data, sign_velocity)[1].gain);
-    CHECK(output_gains(torque_gains(robot, OutputKind::joint_torque, {}, recorded, sign_velocity), 2) ==
+    CHECK(gains[1].gain == estimate()[1].gain);
+    CHECK(output_gains(torque_gains(robot, OutputKind::joint_torque, {}, estimate), 2) ==
           std::vector{1.0, 1.0});
 }
 

@@ -56,10 +56,12 @@ void check_fit(const Plan& plan, const Robot& robot, const Recording& recording)
 
 /// Returns the outputs per N·m: from the plan's torque constants, or estimated as in training.
 std::vector<double> gains_of_plan(const Plan& plan, const Robot& robot, std::span<const Recording> training) {
-    const auto recorded = [&] { return recorded_motion(training, rigid_body_window(training)); };
-    return output_gains(
-        torque_gains(robot, plan.outputs, plan.robot.torque_constants, recorded, plan.robot.sign_velocity),
-        training.front().output.names.size());
+    const auto estimate = [&] {
+        return estimate_torque_gains(robot, recorded_motion(training, rigid_body_window(training)),
+                                     plan.robot.sign_velocity);
+    };
+    return output_gains(torque_gains(robot, plan.outputs, plan.robot.torque_constants, estimate),
+                        training.front().output.names.size());
 }
 
 struct FittedBodies {

@@ -3,7 +3,6 @@
 
 #include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/base/numerics/to_vector.hpp"
-#include "tools/base/recording/sample_grid.hpp"
 #include "tools/model/chain_model.hpp"
 #include "tools/model/effects.hpp"
 #include "tools/robot/dynamics/friction_direction.hpp"
@@ -257,12 +256,6 @@ std::vector<RigidBodyFit> fit_rigid_body(const Robot& robot, const ChainModel& c
     return {fit_nominal(rows, nominal_parameters(robot, outputs), sign_velocity),
             fit_identified(problem, sizes_of(robot, chain, output_gain, sign_velocity), sign_velocity,
                            output_gain)};
-}
-
-ZeroPhaseWindow rigid_body_window(std::span<const Recording> recordings) {
-    constexpr long least_samples = 3;
-    const long samples = std::lround(rigid_body_window_s / sample_period_s(recordings));
-    return {static_cast<int>(std::max(samples, least_samples)), 3};
 }
 
 const PhysicsModel* rigid_body_of(std::span<const TrainedModel> models) {

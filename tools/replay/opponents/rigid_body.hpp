@@ -34,15 +34,7 @@ std::vector<RigidBodyFit> fit_rigid_body(const Robot& robot, const ChainModel& c
 /// without a complete window.
 Forecasts rigid_body_forecasts(const RigidBodyFit& fit, const ChainModel& chain, const Recording& recording);
 
-/// Returns the window for derivatives. Throws InputError for fewer than two rows.
-ZeroPhaseWindow rigid_body_window(std::span<const Recording> recordings);
-
 /// Returns the physics of the first model with fits; nullptr if there is none.
 const PhysicsModel* rigid_body_of(std::span<const TrainedModel> models);
-
-/// Half of the window for derivatives (s); at least three samples. On the UR5 recordings No3, No5 and No6,
-/// windows of 24 ms and 80 ms changed the errors by less than 5 % (geometric mean over the outputs): those of
-/// the robot file's inertia and of the inertia identified on No6.
-inline constexpr double rigid_body_window_s = 0.04;
 
 } // namespace dfdyn::tools

@@ -83,7 +83,7 @@ double estimate_position_noise_bound(const TrainingData& data) {
 }
 
 void estimate_derivatives(TrainingData& data, std::span<const Recording> recordings, int lags,
-                          double position_noise_bound, int every) {
+                          double position_noise_bound) {
     const std::vector<std::int64_t> times_ns = sample_times_ns(recordings);
     const Eigen::Index rows = data.positions.rows();
     data.velocities = Eigen::MatrixXd::Zero(rows, data.positions.cols());
@@ -95,7 +95,7 @@ void estimate_derivatives(TrainingData& data, std::span<const Recording> recordi
         filled = data.gap_before[static_cast<std::size_t>(t)] ? 1 : std::min(filled + 1, lags + 1);
         for (Eigen::Index joint = 0; joint < data.positions.cols(); ++joint) {
             std::size_t count = 0;
-            for (int lag = 0; lag < filled; lag += every) {
+            for (int lag = 0; lag < filled; ++lag) {
                 ages_s[count] = 1e-9 * static_cast<double>(times_ns[static_cast<std::size_t>(t - lag)] -
                                                            times_ns[static_cast<std::size_t>(t)]);
                 values[count] = data.positions(t - lag, joint);
@@ -107,11 +107,6 @@ void estimate_derivatives(TrainingData& data, std::span<const Recording> recordi
             data.accelerations(t, joint) = window.acceleration();
         }
     }
-}
-
-int derivative_spacing(int lags) {
-    constexpr int most_lags = 40;
-    return std::max(1, (lags + most_lags - 1) / most_lags);
 }
 
 } // namespace dfdyn::tools

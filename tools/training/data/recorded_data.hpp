@@ -22,11 +22,8 @@ void copy_derivatives(TrainingData& data, std::span<const Recording> recordings)
 double estimate_position_noise_bound(const TrainingData& data);
 
 /// Estimates velocities and accelerations with the firmware's adaptive window over at most `lags` + 1
-/// positions; of these only one in `every`, from the newest on. O(T n (lags / every)^2).
+/// positions. O(T n lags^2).
 void estimate_derivatives(TrainingData& data, std::span<const Recording> recordings, int lags,
-                          double position_noise_bound, int every = 1);
-
-/// Returns the spacing with which a window of `lags` + 1 positions has at most 41.
-int derivative_spacing(int lags);
+                          double position_noise_bound);
 
 } // namespace dfdyn::tools
