@@ -10,7 +10,6 @@
 #include "tools/robot/urdf/read_robot.hpp"
 #include "tools/training/model_training.hpp"
 
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -25,21 +24,21 @@ inline tools::Robot contact_robot(const std::string& urdf, const std::string& ti
 }
 
 /// Rigid body and friction with the limits of contacts, as `dfdyn train --starts` computes them.
-/// `sign_velocity`: with filters of its own (`--own-motion`); without, the rows of DFR and 0.05.
+/// `own_motion`: with `--own-motion --sign-velocity 0.01`.
 inline tools::TrainedModel contact_model(std::span<const tools::Recording> recordings,
                                          const tools::Robot& robot, tools::OutputKind outputs, int starts,
-                                         std::optional<double> sign_velocity = {}) {
+                                         bool own_motion = false) {
     tools::ModelTraining training;
     training.options.model = &tools::structures::P;
     training.options.input = tools::InputKind::DFR;
     training.options.lags = 10;
     training.options.likelihood_rows = 600;
     training.options.starts = starts;
-    training.options.physics.own_motion = sign_velocity.has_value();
+    training.options.physics.own_motion = own_motion;
     training.physics =
         tools::RobotPhysics{robot,
                             {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"},
-                            sign_velocity.value_or(0.05),
+                            own_motion ? 0.01 : 0.05,
                             {}};
     tools::TrainedModel model =
         train_model(prepare_training(recordings, training), outputs, training, {}).model;

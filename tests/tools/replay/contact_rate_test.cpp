@@ -99,7 +99,7 @@ const TrainedModel& simulated_model(const Robot& robot) {
         for (std::uint64_t seed = 1; seed <= 8; ++seed) {
             recordings.push_back(simulated(robot, scenario_of(seed, 60)));
         }
-        return contact_model(recordings, robot, OutputKind::motor_current, 1, 0.01);
+        return contact_model(recordings, robot, OutputKind::motor_current, 1, true);
     }();
     return model;
 }

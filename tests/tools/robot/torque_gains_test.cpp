@@ -53,15 +53,19 @@ RecordedMotion currents(std::mt19937_64& engine, const Robot& robot, const std::
     return data;
 }
 
+void check_recovered(const Robot& robot, const RecordedMotion& data, const std::vector<double>& gains) {
+    const auto found = estimate_torque_gains(robot, data, sign_velocity);
+    REQUIRE(found.size() == gains.size());
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+        CHECK(found[i].gain == Approx(gains[i]).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("gains are recovered from currents with friction and offsets") {
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = random_robot(engine, 3);
     const std::vector<double> gains{0.11, 0.09, 0.13};
-    const auto found = estimate_torque_gains(robot, currents(engine, robot, gains), sign_velocity);
-    REQUIRE(found.size() == 3);
-    for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(found[i].gain == Approx(gains[i]).epsilon(1e-6));
-    }
+    check_recovered(robot, currents(engine, robot, gains), gains);
 }
 
 TEST_CASE("rotors do not change the gains") {
@@ -70,10 +74,7 @@ TEST_CASE("rotors do not change the gains") {
     const std::vector<double> gains{0.11, 0.09, 0.13};
     RecordedMotion data = currents(engine, robot, gains);
     data.outputs += 0.2 * data.motion.acceleration;
-    const auto found = estimate_torque_gains(robot, data, sign_velocity);
-    for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(found[i].gain == Approx(gains[i]).epsilon(1e-6));
-    }
+    check_recovered(robot, data, gains);
 }
 
 TEST_CASE("a weight that friction bears at rest does not change the gains") {
@@ -84,10 +85,7 @@ TEST_CASE("a weight that friction bears at rest does not change the gains") {
     const RecordedMotion rest = currents(engine, robot, gains);
     data.motion.velocity.topRows(200).setZero();
     data.outputs.topRows(200) = 0.3 * rest.outputs.topRows(200);
-    const auto found = estimate_torque_gains(robot, data, sign_velocity);
-    for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(found[i].gain == Approx(gains[i]).epsilon(1e-6));
-    }
+    check_recovered(robot, data, gains);
 }
 
 /// A simulated UR5 with bristle friction, rotors and quantised positions: 60 s of a sum of sines.

@@ -130,14 +130,14 @@ double possible_gain(const Eigen::MatrixXd& rows) {
     return gain_of(columns);
 }
 
-/// Returns `gain(rows, sign_velocity)` of each joint.
+/// Returns `gain(current_rows)` of each joint.
 template <class Gain>
 std::vector<double> gains_of_joints(const Robot& robot, const RecordedMotion& recorded, double sign_velocity,
                                     Gain gain) {
     const Eigen::MatrixXd torques = nominal_torques(robot, recorded.motion);
     std::vector<double> gains;
     for (Eigen::Index joint = 0; joint < torques.cols(); ++joint) {
-        gains.push_back(gain(current_rows(recorded, torques, joint, sign_velocity), sign_velocity));
+        gains.push_back(gain(current_rows(recorded, torques, joint, sign_velocity)));
     }
     return gains;
 }
@@ -196,14 +196,15 @@ std::vector<TorqueGain> torque_gains(const Robot& robot, OutputKind outputs,
 
 std::vector<TorqueGain> rough_torque_gains(const Robot& robot, const RecordedMotion& recorded,
                                            double sign_velocity) {
-    return with_median(
-        gains_of_joints(robot, recorded, sign_velocity,
-                        [](const Eigen::MatrixXd& rows, double /*v*/) { return possible_gain(rows); }));
+    return with_median(gains_of_joints(robot, recorded, sign_velocity, possible_gain));
 }
 
 std::vector<TorqueGain> estimate_torque_gains(const Robot& robot, const RecordedMotion& recorded,
                                               double sign_velocity) {
-    const std::vector<double> found = gains_of_joints(robot, recorded, sign_velocity, determined_gain);
+    const std::vector<double> found =
+        gains_of_joints(robot, recorded, sign_velocity, [sign_velocity](const Eigen::MatrixXd& rows) {
+            return determined_gain(rows, sign_velocity);
+        });
     return std::ranges::any_of(found, [](double gain) { return gain > 0; })
                ? with_median(found)
                : rough_torque_gains(robot, recorded, sign_velocity);

@@ -39,7 +39,7 @@ std::vector<TorqueGain> torque_gains(const Robot& robot, OutputKind outputs,
 ///
 /// A joint has no estimate of its own if its nominal torque explains less than a fifth of its current's
 /// spread (a wrist), if the estimate's standard deviation (jackknife over eighths of the rows) exceeds a
-/// tenth of it, and if it is below a third or above three times the median of the others. It then receives
+/// tenth of it, or if it is below a third or above three times the median of the others. It then receives
 /// this median. If no joint has an estimate, returns rough_torque_gains().
 std::vector<TorqueGain> estimate_torque_gains(const Robot& robot, const RecordedMotion& recorded,
                                               double sign_velocity);
