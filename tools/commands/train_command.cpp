@@ -22,6 +22,7 @@
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/opponents/rigid_body.hpp"
 #include "tools/training/model_training.hpp"
+#include "tools/training/sign_velocity.hpp"
 #include "tools/training/training_options.hpp"
 
 #include <initializer_list>
@@ -47,7 +48,8 @@ struct TrainOptions {
     std::string derivatives = "auto";
     std::string prior = "scaled";
     std::vector<std::string> effects;
-    double sign_velocity = 0.05;
+    std::optional<double> sign_velocity;
+    bool own_motion = false;
     std::vector<double> torque_constants;
     ClockOptions clock;
     SizeOptions sizes;
@@ -72,17 +74,18 @@ void add_physics_options(CLI::App& command, TrainOptions& options) {
     command
         .add_option("--sign-velocity", options.sign_velocity,
                     "Coulomb friction is tanh(qd / this); at this velocity (rad/s) it has three quarters of "
-                    "its level")
-        ->check(positive_number())
-        ->capture_default_str();
+                    "its level; default: 0.05, with --own-motion the most likely of 0.002 to 0.1")
+        ->check(positive_number());
     command
         .add_option("--torque-constants", options.torque_constants,
                     "N m/A at each joint, for --outputs i; default: estimated with the nominal robot")
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("K1,K2...");
-    command.add_flag("--own-motion", options.training.physics.own_motion,
-                     "The physics computes velocity and acceleration with filters of its own, for any input");
+    command.add_flag(
+        "--own-motion", options.own_motion,
+        "Inputs of positions: the physics computes velocity and acceleration with rows of its own, "
+        "which keep the scale of every motion");
     command
         .add_option("--prior", options.prior,
                     "Prior of the physical parameters: gamma^2 is equal for columns of equal size (scaled), "
@@ -157,6 +160,7 @@ ModelTraining model_training(const TrainOptions& options, OutputKind outputs) {
     training.options.model = &structure(options.structure);
     training.options.hyper = parse_hyper_method(options.hyper);
     training.options.physics.prior = parse_prior_form(options.prior);
+    training.options.physics.motion = options.own_motion ? PhysicsMotion::free : PhysicsMotion::of_input;
     if (training.options.model->has_physics()) {
         if (options.robot.urdf.empty()) {
             throw InputError("--model " + options.structure + ": expected --robot and --tip, found none");
@@ -182,6 +186,7 @@ void note_ignored(const TrainOptions& options) {
         }
     };
     note(!physics, {"--effects", "--sign-velocity", "--own-motion"}, model);
+    note(physics && derivatives, {"--own-motion"}, "input " + options.input);
     note(!structure.learns_parameters(), {"--prior"}, model);
     note(!physics, {"--torque-constants"}, model);
     note(cross_validation, {"--starts", "--refinement"}, "--hyper CV");
@@ -227,9 +232,10 @@ void fit_rigid_body_of(TrainedModel& model, const ModelTraining& training,
                        std::span<const Recording> recordings) {
     if (model.physics) {
         const Activity activity("fitting a rigid body with friction to compare with");
-        model.physics->rigid_body =
-            fit_rigid_body(training.physics->robot, model.physics->chain, model.physics->output_gain,
-                           training.physics->sign_velocity, recordings);
+        PhysicsModel& physics = *model.physics;
+        physics.rigid_body =
+            fit_rigid_body(training.physics->robot, physics.chain, physics.output_gain,
+                           sign_velocity_of(physics.effects).value_or(usual_sign_velocity), recordings);
     }
 }
 

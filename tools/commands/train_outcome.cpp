@@ -2,6 +2,7 @@
 #include "tools/commands/train_outcome.hpp"
 
 #include "tools/base/text/text.hpp"
+#include "tools/model/effects.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/model/structure.hpp"
@@ -12,6 +13,7 @@
 
 #include <iostream>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,9 @@ void print_physics(const PhysicsModel& physics) {
     for (std::size_t i = 0; i < physics.selected.size(); ++i) {
         std::cout << "  " << physics.parameter_names[i] << ' '
                   << physics.column_scale[i] * physics.start.weights[i] << '\n';
+    }
+    if (const std::optional<double> sign_velocity = sign_velocity_of(physics.effects)) {
+        std::cout << "dry friction: its sign is tanh(qd / " << *sign_velocity << ")\n";
     }
 }
 

@@ -131,6 +131,13 @@ const EffectKind& offset_kind(const ChainModel& chain) {
     return chain.sensor ? effect_kinds::ft_bias : effect_kinds::torque_offset;
 }
 
+std::optional<double> sign_velocity_of(std::span<const EffectModel> effects) {
+    const auto dry = std::ranges::find_if(effects, [](const EffectModel& effect) {
+        return effect_kind(effect.name).has(&EffectModel::sign_velocity);
+    });
+    return dry == effects.end() ? std::nullopt : std::optional(dry->sign_velocity);
+}
+
 std::vector<EffectModel> in_column_order(std::vector<EffectModel> effects) {
     std::ranges::stable_sort(effects, {}, [](const EffectModel& effect) {
         return std::pair(std::ranges::find(kinds, &effect_kind(effect.name)), effect.row);

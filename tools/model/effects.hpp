@@ -3,6 +3,7 @@
 
 #include "tools/model/model.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -71,6 +72,9 @@ const EffectKind& effect_kind(const std::string& name);
 
 /// Returns the kind of an offset of the chain's outputs: `ft_bias` for a wrench, `torque_offset` otherwise.
 const EffectKind& offset_kind(const ChainModel& chain);
+
+/// Returns the v of dry friction's sign tanh(qd / v), rad/s (m/s), from the first effect that has one.
+std::optional<double> sign_velocity_of(std::span<const EffectModel> effects);
 
 /// Returns `effects` in the order of the physics' columns.
 std::vector<EffectModel> in_column_order(std::vector<EffectModel> effects);

@@ -11,6 +11,7 @@
 #include "tools/replay/output_error.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/training/data/lag_spacing.hpp"
+#include "tools/training/sign_velocity.hpp"
 #include "tools/training/training_options.hpp"
 
 #include <algorithm>
@@ -107,6 +108,9 @@ class SizeSearch {
         : split_(split_recordings(recordings, training_share)), outputs_(outputs), training_(training),
           budget_(budget), on_candidate_(on_candidate), period_s_(sample_period_s(recordings)),
           probe_(largest_probe(training.options.forgetting_factor)) {
+        if (training_.physics && !training_.physics->sign_velocity) {
+            training_.physics->sign_velocity = usual_sign_velocity;
+        }
         TrainingOptions& options = training_.options;
         options.starts = 1;
         options.likelihood_rows = std::min(options.likelihood_rows, 300);

@@ -4,6 +4,7 @@
 #include "tools/base/numerics/to_vector.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/model/chain_model.hpp"
+#include "tools/model/effects.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/model/run_time/host_model.hpp"
@@ -14,6 +15,7 @@
 #include "tools/training/data/stored_motion.hpp"
 #include "tools/training/physics/parameter_sizes.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
+#include "tools/training/sign_velocity.hpp"
 #include "tools/training/start/batch_start.hpp"
 #include "tools/training/start/limits.hpp"
 #include "tools/training/training_options.hpp"
@@ -66,15 +68,33 @@ std::vector<TorqueGain> gains_for(const RobotPhysics& robot, OutputKind outputs,
                                   std::span<const Recording> recordings) {
     return torque_gains(robot.robot, outputs, robot.torque_constants, [&] {
         return estimate_torque_gains(robot.robot, recorded_motion(recordings, rigid_body_window(recordings)),
-                                     robot.sign_velocity);
+                                     robot.sign_velocity.value_or(usual_sign_velocity));
     });
 }
 
 PhysicsColumnsOf physics_columns_of(const RobotPhysics& robot, OutputKind outputs,
                                     std::vector<double> gains) {
     PhysicsColumnsOf columns{chain_model(robot.robot, outputs), {}, std::move(gains)};
-    columns.effects = effect_models(robot.effects, columns.chain, robot.sign_velocity);
+    columns.effects =
+        effect_models(robot.effects, columns.chain, robot.sign_velocity.value_or(usual_sign_velocity));
     return columns;
+}
+
+/// Chooses the velocity of dry friction's sign if nobody gave it.
+void choose_sign_velocity(const TrainingData& data, const TrainingOptions& options, const RobotPhysics& robot,
+                          PhysicsColumnsOf& columns) {
+    const bool own_motion =
+        options.physics.motion == PhysicsMotion::free && !input_description(options.input).uses_derivatives();
+    if (robot.sign_velocity || !sign_velocity_of(columns.effects) || !own_motion ||
+        options.hyper != HyperMethod::ML) {
+        return;
+    }
+    const auto effects_at = [&](double sign_velocity) {
+        return effect_models(robot.effects, columns.chain, sign_velocity);
+    };
+    columns.effects = effects_at(most_likely_sign_velocity(data, options, [&](double sign_velocity) {
+        return robot_regressor(columns.chain, effects_at(sign_velocity), columns.output_gain);
+    }));
 }
 
 void check_joints(const Robot& robot, const TrainingData& data) {
@@ -203,12 +223,13 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     std::vector<TorqueGain> gains = gains_for(robot, outputs, prepared.recordings);
     check_estimated_gains(gains);
     const auto output_count = static_cast<std::size_t>(prepared.data.outputs.cols());
-    const PhysicsColumnsOf columns = physics_columns_of(robot, outputs, output_gains(gains, output_count));
-    const auto regressor = robot_regressor(columns.chain, columns.effects, columns.output_gain);
-    options.physics.regressor = regressor.get();
+    PhysicsColumnsOf columns = physics_columns_of(robot, outputs, output_gains(gains, output_count));
     options.physics.parameter_size = parameter_sizes(robot.robot, columns.chain, columns.effects);
     options.physics.nominal = expected_parameters(robot.robot, columns.chain, columns.effects);
     options.physics.nominal_deviation = parameter_deviations(robot.robot, columns.chain, columns.effects);
+    choose_sign_velocity(prepared.data, options, robot, columns);
+    const auto regressor = robot_regressor(columns.chain, columns.effects, columns.output_gain);
+    options.physics.regressor = regressor.get();
     TrainingResult result = train(prepared.data, options, progress);
     TrainedModel model = std::move(result.model);
     set_derivatives(model, prepared);

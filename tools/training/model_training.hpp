@@ -17,8 +17,10 @@ namespace dfdyn::tools {
 /// The robot for models P, SP, SP2 and SPK.
 struct RobotPhysics {
     Robot robot;
-    std::vector<std::string> effects;     ///< in addition to the rigid body; names as in find_effect_kind()
-    double sign_velocity = 0.05;          ///< v of Coulomb's tanh(qd / v), rad/s
+    std::vector<std::string> effects; ///< in addition to the rigid body; names as in find_effect_kind()
+    /// v > 0 of dry friction's tanh(qd / v), rad/s. Empty: most_likely_sign_velocity() for
+    /// PhysicsMotion::free and ML, otherwise usual_sign_velocity.
+    std::optional<double> sign_velocity;
     std::vector<double> torque_constants; ///< N·m/A of each joint, for currents; empty: estimated
 };
 

@@ -51,8 +51,7 @@ void expect(bool condition, const std::string& what, double found) {
 
 void check_lags(const TrainingOptions& options) {
     const InputDescription& input = input_description(options.input);
-    const bool physics =
-        options.model->has_physics() && (!input.uses_derivatives() || options.physics.own_motion);
+    const bool physics = options.model->has_physics() && !input.uses_derivatives();
     const int least = physics ? std::max(2, input.least_lags) : input.least_lags;
     expect(options.lags >= least, "at least " + std::to_string(least) + " lags", options.lags);
     if (input.chooses_rows) {
@@ -127,7 +126,7 @@ void check_physics(const TrainingOptions& options, const TrainingData& data) {
            "physics of " + std::to_string(data.outputs.cols()) + " outputs", outputs);
     expect(physics.column_threshold > 0 && physics.column_threshold < 1,
            "a threshold of the columns between 0 and 1", physics.column_threshold);
-    if (input_description(options.input).chooses_rows && !physics.own_motion) {
+    if (input_description(options.input).chooses_rows && physics.motion == PhysicsMotion::of_input) {
         expect(options.rows_per_joint >= 3, "at least 3 rows per joint for the physics to share",
                options.rows_per_joint);
     }

@@ -26,14 +26,20 @@ enum class PriorForm {
     diagonal, ///< D estimated, gamma = 1
 };
 
+/// Velocity and acceleration of the physics for inputs of positions. With STD they are always the
+/// recording's.
+enum class PhysicsMotion {
+    free,  ///< rows of its own, free but for their response to ramps and parabolas; see free_motion()
+    poles, ///< filters like those of DFSR, with separate poles; see difference_motion()
+    /// As in the paper, derived from the input. DFSR: its two filters in physical units; DFR: its rows 2 and
+    /// 3, of length 1, with learned factors, which need not be physical; DF, DFW: a polynomial of degree 2.
+    of_input,
+};
+
 /// The physics of P, SP, SP2 and SPK.
 struct PhysicsOptions {
     const Regressor* regressor = nullptr; ///< of the recording's joints and outputs; must outlive training
-    /// Motion input of the regressor. False, as in the paper: derived from the input. STD: the recording's
-    /// derivatives; DFSR: its two filters in physical units (see difference_motion()); DFR: its rows 2 and 3,
-    /// of length 1, with additional factors; DF, DFW: a polynomial of degree 2 through the window. True:
-    /// filters like those of DFSR, with separate poles.
-    bool own_motion = false;
+    PhysicsMotion motion = PhysicsMotion::of_input;
     PriorForm prior = PriorForm::scaled;
     double column_threshold = 1e-3; ///< of select_columns(), in (0, 1)
     /// P: largest plausible magnitude of each parameter of the regressor, > 0, in the parameter's own unit;

@@ -24,7 +24,7 @@ inline tools::Robot contact_robot(const std::string& urdf, const std::string& ti
 }
 
 /// Rigid body and friction with the limits of contacts, as `dfdyn train --starts` computes them.
-/// `own_motion`: with `--own-motion --sign-velocity 0.01`.
+/// `own_motion`: with `--own-motion`.
 inline tools::TrainedModel contact_model(std::span<const tools::Recording> recordings,
                                          const tools::Robot& robot, tools::OutputKind outputs, int starts,
                                          bool own_motion = false) {
@@ -34,12 +34,11 @@ inline tools::TrainedModel contact_model(std::span<const tools::Recording> recor
     training.options.lags = 10;
     training.options.likelihood_rows = 600;
     training.options.starts = starts;
-    training.options.physics.own_motion = own_motion;
-    training.physics =
-        tools::RobotPhysics{robot,
-                            {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"},
-                            own_motion ? 0.01 : 0.05,
-                            {}};
+    if (own_motion) {
+        training.options.physics.motion = tools::PhysicsMotion::free;
+    }
+    training.physics = tools::RobotPhysics{
+        robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"}, std::nullopt, {}};
     tools::TrainedModel model =
         train_model(prepare_training(recordings, training), outputs, training, {}).model;
     calibrate_innovation_limit(model, recordings);

@@ -5,10 +5,9 @@
 #include "tests/support/random_robot.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/robot/arms.hpp"
-#include "tests/tools/support/append_row.hpp"
+#include "tests/tools/support/simulated_currents.hpp"
 #include "tools/model/chain_model.hpp"
 #include "tools/robot/firmware_chain.hpp"
-#include "tools/simulation/simulation.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
 
 #include <cmath>
@@ -88,25 +87,13 @@ TEST_CASE("a weight that friction bears at rest does not change the gains") {
     check_recovered(robot, data, gains);
 }
 
-/// A simulated UR5 with bristle friction, rotors and quantised positions: 60 s of a sum of sines.
-RecordedMotion simulated_currents(const Robot& robot, const Scenario& scenario) {
-    Recording recording;
-    recording.position.names = joint_names("q", robot.joints.size());
-    recording.output.names = output_names(OutputKind::motor_current, robot.joints.size());
-    Simulation simulation(robot, scenario);
-    for (std::size_t row = 0; row < scenario.recording.samples; ++row) {
-        const SimulatedSample sample = simulation.next();
-        dfdyn::tests::append_row(recording, sample.time_s, sample.position,
-                                 scenario.torque_sensor.current(sample.torque));
-    }
-    return recorded_motion({&recording, 1}, rigid_body_window({&recording, 1}));
-}
-
 TEST_CASE("torque constants of a simulated arm are found within 10 % for its arm and 35 % for its wrist") {
     const Robot robot = dfdyn::tests::ur5();
     Scenario scenario = read_scenario(DFDYN_TEST_DATA_DIR "/scenarios/ur5_multisine.json", robot);
     scenario.seed = dfdyn::tests::seed();
-    const auto found = estimate_torque_gains(robot, simulated_currents(robot, scenario), sign_velocity);
+    const Recording recording = dfdyn::tests::simulated_currents(robot, scenario);
+    const auto found = estimate_torque_gains(
+        robot, recorded_motion({&recording, 1}, rigid_body_window({&recording, 1})), sign_velocity);
     for (std::size_t joint = 0; joint < found.size(); ++joint) {
         CAPTURE(joint, dfdyn::tests::seed());
         const double truth = (*scenario.torque_sensor.torque_constant)[static_cast<Index>(joint)];

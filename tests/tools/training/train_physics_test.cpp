@@ -167,9 +167,11 @@ TEST_CASE("the columns of the physics are of order one in units of the noise") {
 
 TEST_CASE("the physics of DFR can have its own filters") {
     const auto model = GENERATE(&structures::SP2, &structures::SPK);
+    const auto motion = GENERATE(tools::PhysicsMotion::free, tools::PhysicsMotion::poles);
+    CAPTURE(model->name, static_cast<int>(motion));
     Arm arm;
     arm.options.model = model;
-    arm.options.physics.own_motion = true;
+    arm.options.physics.motion = motion;
     arm.options.rows_per_joint = 2; // without an acceleration
     const tools::TrainingResult result = tools::train(arm.data, arm.options);
     const MatrixXd& rows = result.physics->motion_rows;
@@ -195,20 +197,24 @@ TEST_CASE("SP2 uses given parameters") {
 
 TEST_CASE("DFR has at least the likelihood of DFSR") {
     // Without filters of its own, the prior of SPK has different units for the two inputs.
-    const auto [model, own_motion] = GENERATE(table<const Structure*, bool>(
-        {{&structures::NP, true}, {&structures::SPK, true}, {&structures::SP, false}}));
+    using tools::PhysicsMotion;
+    const auto [model, motion] =
+        GENERATE(table<const Structure*, PhysicsMotion>({{&structures::NP, PhysicsMotion::free},
+                                                         {&structures::SPK, PhysicsMotion::free},
+                                                         {&structures::SPK, PhysicsMotion::poles},
+                                                         {&structures::SP, PhysicsMotion::of_input}}));
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    CAPTURE(model->name, own_motion);
+    CAPTURE(model->name, static_cast<int>(motion));
     Arm arm;
     arm.options.model = model;
-    arm.options.physics.own_motion = own_motion;
+    arm.options.physics.motion = motion;
     arm.options.input = InputKind::DFSR;
     const double structured = tools::train(arm.data, arm.options).model.training.log_likelihood;
     arm.options.input = InputKind::DFR;
     arm.options.starts = 1;
     CHECK(tools::train(arm.data, arm.options).model.training.log_likelihood >=
           // The tolerance is the search's; the filters are truncated differently.
-          structured - (own_motion ? 1e-6 : 1e-3));
+          structured - (motion == PhysicsMotion::of_input ? 1e-3 : 1e-6));
 }
 
 } // namespace train_physics_test

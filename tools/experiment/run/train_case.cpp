@@ -37,7 +37,7 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads
     options.shrinkage = false;          // the paper's predictions; shrinkage would depend on the draw
     options.seed = search_seed;
     options.threads = threads;
-    options.physics.own_motion = one.physics_input == "own";
+    options.physics.motion = one.physics_input == "own" ? PhysicsMotion::poles : PhysicsMotion::of_input;
     options.physics.prior = parse_prior_form(one.prior);
     if (options.model->has_physics() && !robot.urdf.empty()) {
         training.physics.emplace();

@@ -3,6 +3,9 @@
 
 #include "tools/model/inputs/derivative_rows.hpp"
 
+#include <Eigen/QR>
+
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -17,6 +20,7 @@ constexpr double logit_most = 6;         // beta between 0.0025 and 0.9975
 constexpr double beta_start = 0.4;       // the filters of DFR's starts
 constexpr double log_factor_range = 4.6; // a factor of 1/100 to 100
 constexpr double log_room = 0.7;         // a factor of 2
+constexpr double change_most = 10;       // of a free row, in lengths of its start
 constexpr double alike_least = 0.05;     // least correlation of a row with the derivative it starts from
 
 Bounds no_bounds() { return {VectorXd(0), VectorXd(0)}; }
@@ -160,6 +164,54 @@ class DifferenceMotion final : public MotionRows {
     bool own_;
 };
 
+/// Returns an orthonormal basis, in columns, of the rows that are 0 for all polynomials of less than
+/// `degree`.
+MatrixXd rows_without_polynomials(Index degree, int lags) {
+    MatrixXd polynomials(lags + 1, degree);
+    for (Index power = 0; power < degree; ++power) {
+        polynomials.col(power) = VectorXd::LinSpaced(lags + 1, 0, 1).array().pow(static_cast<double>(power));
+    }
+    const MatrixXd basis = polynomials.householderQr().householderQ();
+    return basis.rightCols(lags + 1 - degree);
+}
+
+class FreeMotion final : public MotionRows {
+  public:
+    FreeMotion(int lags, double sample_period, Index inputs)
+        : inputs_(inputs), start_(difference_rows(beta_start, beta_start, lags, sample_period)),
+          changes_{start_.row(0).norm() * rows_without_polynomials(2, lags),
+                   start_.row(1).norm() * rows_without_polynomials(3, lags)} {}
+
+    Bounds bounds() const override {
+        return {VectorXd::Constant(count(), -change_most), VectorXd::Constant(count(), change_most)};
+    }
+
+    VectorXd start(const VectorXd& /*input*/) const override { return VectorXd::Zero(count()); }
+    bool learns() const override { return true; }
+
+    MatrixXd evaluate(const VectorXd& parameters) const override {
+        MatrixXd rows = start_;
+        rows.row(0) += (changes_[0] * parameters.segment(inputs_, of(0))).transpose();
+        rows.row(1) += (changes_[1] * parameters.segment(inputs_ + of(0), of(1))).transpose();
+        return rows;
+    }
+
+    VectorXd pull_back(const VectorXd& parameters, const MatrixXd& gradient) const override {
+        VectorXd result = VectorXd::Zero(parameters.size());
+        result.segment(inputs_, of(0)) = changes_[0].transpose() * gradient.row(0).transpose();
+        result.segment(inputs_ + of(0), of(1)) = changes_[1].transpose() * gradient.row(1).transpose();
+        return result;
+    }
+
+  private:
+    Index of(std::size_t row) const { return changes_[row].cols(); }
+    Index count() const { return of(0) + of(1); }
+
+    Index inputs_;
+    MatrixXd start_;
+    std::array<MatrixXd, 2> changes_; ///< columns: changes of the two rows that keep their responses
+};
+
 class ScaledMotion final : public MotionRows {
   public:
     ScaledMotion(std::unique_ptr<RowFamily> family, int lags, double sample_period, MatrixXd pooled_factor)
@@ -225,6 +277,10 @@ std::unique_ptr<MotionRows> polynomial_motion(int lags, double sample_period) {
 
 std::unique_ptr<MotionRows> difference_motion(int lags, double sample_period, Index first, bool own) {
     return std::make_unique<DifferenceMotion>(lags, sample_period, first, own);
+}
+
+std::unique_ptr<MotionRows> free_motion(int lags, double sample_period, Index inputs) {
+    return std::make_unique<FreeMotion>(lags, sample_period, inputs);
 }
 
 VectorXd log_factors(const MatrixXd& rows, const MatrixXd& wanted, const MatrixXd& pooled_factor) {

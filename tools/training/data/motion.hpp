@@ -90,6 +90,12 @@ std::unique_ptr<MotionRows> polynomial_motion(int lags, double sample_period);
 /// `own` separate ones that follow the `first` parameters of the input. 2 <= lags.
 std::unique_ptr<MotionRows> difference_motion(int lags, double sample_period, Eigen::Index first, bool own);
 
+/// Rows that are free but for their responses: velocity 0 to a constant position and 1 to a ramp of 1 per s,
+/// acceleration 0 to both and 1 to a parabola of 1 per s^2. They may thus smooth noise or follow the newest
+/// samples, but not change the scale of a motion. 2 M - 3 parameters after the `inputs` of the input; at 0
+/// they are mean differences. 2 <= lags.
+std::unique_ptr<MotionRows> free_motion(int lags, double sample_period, Eigen::Index inputs);
+
 /// Returns the logarithms of the factors with which `rows` are closest to `wanted` (2 x (M+1) each), over the
 /// windows of `pooled_factor`. If a row is orthogonal to the wanted one, the factor gives it the same length.
 Eigen::VectorXd log_factors(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& wanted,

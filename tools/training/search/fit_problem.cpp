@@ -124,7 +124,7 @@ VectorXd FitProblem::start_from(const FitProblem& structured, const VectorXd& th
 VectorXd FitProblem::physics_from(const FitProblem& structured, const VectorXd& theta,
                                   const VectorXd& input) const {
     const Hyperparameters from = structured.split(theta);
-    if (physics_ == nullptr || setup_.options.physics.own_motion) {
+    if (physics_ == nullptr || setup_.options.physics.motion != PhysicsMotion::of_input) {
         return from.physics;
     }
     const InputRows rows = setup_.row_family(kind_)->evaluate(input);

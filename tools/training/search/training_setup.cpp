@@ -83,9 +83,11 @@ std::unique_ptr<InputMap> TrainingSetup::input(InputKind kind, const RowList& at
 
 std::unique_ptr<MotionRows> TrainingSetup::motion_rows(InputKind kind) const {
     const double period = data.sample_period_s;
-    if (options.physics.own_motion) {
+    const PhysicsMotion own = options.physics.motion;
+    if (own != PhysicsMotion::of_input && !input_description(kind).uses_derivatives()) {
         const Index inputs = input(kind, {rows.moving.front()})->bounds().lower.size();
-        return difference_motion(options.lags, period, inputs, true);
+        return own == PhysicsMotion::free ? free_motion(options.lags, period, inputs)
+                                          : difference_motion(options.lags, period, inputs, true);
     }
     switch (input_description(kind).motion) {
     case MotionSource::derivatives:

@@ -35,6 +35,18 @@ TEST_CASE("the filters of the physics give slope and curvature in physical units
     CHECK(rows.row(1).dot(parabola(2, -3, 5)) == Approx(5));
 }
 
+TEST_CASE("free rows give slope and curvature whatever their parameters are") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    tools::NormalSource random(dfdyn::tests::seed());
+    const auto motion = tools::free_motion(lags, period, 0);
+    CHECK(motion->bounds().lower.size() == 2 * lags - 3);
+    const MatrixXd rows = motion->evaluate(3 * random.matrix(2 * lags - 3, 1));
+    CHECK(rows.row(0).dot(parabola(2, 0, 0)) == Approx(0).margin(1e-9));
+    CHECK(rows.row(0).dot(parabola(2, -3, 0)) == Approx(-3));
+    CHECK(rows.row(1).dot(parabola(2, -3, 0)) == Approx(0).margin(1e-9));
+    CHECK(rows.row(1).dot(parabola(2, -3, 5)) == Approx(5));
+}
+
 TEST_CASE("the filters of the physics equal those of DFSR if the window is long") {
     constexpr double beta = 0.3;
     constexpr int many = 60;
@@ -74,7 +86,7 @@ TEST_CASE("the rows of DFR start in physical units") {
 }
 
 TEST_CASE("the pull back of every motion equals finite differences") {
-    const int kind = GENERATE(0, 1, 2, 3);
+    const int kind = GENERATE(0, 1, 2, 3, 4);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(kind);
     tools::NormalSource random(dfdyn::tests::seed());
@@ -89,6 +101,8 @@ TEST_CASE("the pull back of every motion equals finite differences") {
         motion_rows = tools::difference_motion(lags, period, 1, false);
     } else if (kind == 2) {
         motion_rows = tools::difference_motion(lags, period, 3, true);
+    } else if (kind == 3) {
+        motion_rows = tools::free_motion(lags, period, 3);
     } else {
         motion_rows = tools::scaled_motion(dfdyn::tests::row_family(tools::InputKind::DFR, lags, 4, pooled),
                                            lags, period, pooled);

@@ -10,6 +10,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -30,13 +31,13 @@ struct Problem {
     dfdyn::tests::SyntheticRegressor regressor{2, 2, 5, random};
     tools::TrainingOptions options;
 
-    Problem(InputKind input, bool own_motion) {
+    Problem(InputKind input, tools::PhysicsMotion motion) {
         options.input = input;
         options.lags = 4;
         options.feature_count = 10;
         options.likelihood_rows = 40;
         options.physics.regressor = &regressor;
-        options.physics.own_motion = own_motion;
+        options.physics.motion = motion;
     }
 
     tools::TrainingData noisy(tools::TrainingData clean) {
@@ -69,18 +70,22 @@ void check_gradient(const tools::Likelihood& likelihood, const VectorXd& theta) 
     const VectorXd truth = dfdyn::tests::differences(value_at, theta, 1e-3);
     if (truth.isZero(0)) { // physics alone does not depend on the gains of the input
         CHECK(value->gradient.isZero(0));
-    } else {
-        CHECK(dfdyn::tests::relative_error(value->gradient, truth) < 2e-6);
+        return;
     }
+    // Where two variances of the prior are equally likely the value has a kink; a shorter step avoids it.
+    const VectorXd closer = dfdyn::tests::differences(value_at, theta, 1e-4);
+    CHECK(std::min(dfdyn::tests::relative_error(value->gradient, truth),
+                   dfdyn::tests::relative_error(value->gradient, closer)) < 2e-6);
 }
 
 TEST_CASE("the gradients of all models with all inputs equal finite differences") {
     const std::string name = GENERATE("NP", "P", "PD", "SP", "SPK", "SPKD");
     const auto input = GENERATE(from_range(dfdyn::tests::all_inputs()));
-    const bool own_motion = GENERATE(false, true);
+    const auto motion =
+        GENERATE(tools::PhysicsMotion::free, tools::PhysicsMotion::poles, tools::PhysicsMotion::of_input);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    CAPTURE(name, static_cast<int>(input), own_motion);
-    Problem problem(input, own_motion);
+    CAPTURE(name, static_cast<int>(input), static_cast<int>(motion));
+    Problem problem(input, motion);
     const tools::TrainingSetup setup(problem.data, problem.options);
     const tools::FitModel model = model_of(setup, name);
     const tools::FitProblem fit(setup, input, setup.rows.likelihood, model);
@@ -96,7 +101,7 @@ TEST_CASE("the likelihood with coupled physics and motion and kernel is the norm
     const std::string name = GENERATE("SP", "SPK", "P");
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(name);
-    Problem problem(InputKind::DFSR, false);
+    Problem problem(InputKind::DFSR, tools::PhysicsMotion::of_input);
     const tools::TrainingSetup setup(problem.data, problem.options);
     const tools::FitModel model = model_of(setup, name);
     const tools::FitProblem fit(setup, InputKind::DFSR, setup.rows.likelihood, model);
@@ -142,7 +147,7 @@ TEST_CASE("DFR can start from DFSR's optimum if its physics shares rows with the
     const std::string name = GENERATE("P", "SP", "SPK", "SPKD");
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(name);
-    Problem problem(InputKind::DFR, false);
+    Problem problem(InputKind::DFR, tools::PhysicsMotion::of_input);
     const tools::TrainingSetup setup(problem.data, problem.options);
     const tools::FitModel model = model_of(setup, name);
     const tools::FitProblem free(setup, InputKind::DFR, setup.rows.likelihood, model);
@@ -162,7 +167,7 @@ TEST_CASE("DFR can start from DFSR's optimum with equal kernel and likelihood") 
     const std::string name = GENERATE("NP", "SPK");
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(name);
-    Problem problem(InputKind::DFR, true);
+    Problem problem(InputKind::DFR, tools::PhysicsMotion::free);
     const tools::TrainingSetup setup(problem.data, problem.options);
     const tools::FitModel model = model_of(setup, name);
     const tools::FitProblem free(setup, InputKind::DFR, setup.rows.likelihood, model);
