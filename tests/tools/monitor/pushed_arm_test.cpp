@@ -37,6 +37,7 @@ struct Recipe {
     InputKind input;
     int lags;
     std::vector<std::string> effects;
+    PhysicsMotion motion = PhysicsMotion::of_input;
 };
 
 /// With the options in docs/guide/monitor.md.
@@ -52,7 +53,8 @@ TrainedModel trained(const Recording& data, const Robot& robot, const Recipe& re
     training.options.likelihood_rows = 600;
     training.options.starts = 3;
     training.options.forgetting_factor = 0.9999;
-    training.physics = RobotPhysics{robot, recipe.effects, 0.05, {}};
+    training.options.physics.motion = recipe.motion;
+    training.physics = RobotPhysics{robot, recipe.effects, std::nullopt, {}};
     const std::vector<Recording> recordings{data};
     TrainedModel model =
         train_model(prepare_training(recordings, training), OutputKind::motor_current, training, {}).model;
@@ -165,11 +167,12 @@ TEST_CASE(
     with_rotors.emplace_back("rotor_inertia");
     // Small differences between models decide about the weakest push.
     for (const Recipe& recipe :
-         {Recipe{InputKind::DFR, 10, friction}, Recipe{InputKind::DFR, 10, with_rotors}}) {
+         {Recipe{InputKind::DFR, 10, friction}, Recipe{InputKind::DFR, 10, with_rotors},
+          Recipe{InputKind::DFR, 10, friction, PhysicsMotion::free}}) {
         TrainedModel model = trained(first, robot, recipe);
         model.contact = measure_contact_limits(model, std::span(&first, 1));
         for (const bool learning : {false, true}) {
-            CAPTURE(recipe.lags, recipe.effects.size(), learning);
+            CAPTURE(recipe.effects.size(), static_cast<int>(recipe.motion), learning);
             for (const char* name : {"No3_Acc", "No5_Acc_slow_no_disturbance", "No6_Acc_slow_Verify_Model",
                                      "No7_Acc_slow_Verify_Model_short", "No8_Singularity_Free_1",
                                      "No9_Singularity_Free_NoDist"}) {

@@ -206,7 +206,7 @@ bool moves_at(const Recording& recording, const JointPush& push) {
     return std::abs(recording.position.row(row)[joint] - recording.position.row(row - 25)[joint]) > 0.004;
 }
 
-TEST_CASE("three of four pushes of twice the Coulomb friction in motion are found in a tenth of a second",
+TEST_CASE("pushes of twice the Coulomb friction in motion are found, nine of ten in a tenth of a second",
           "[.long][contact-rate]") {
     constexpr double duration_s = 300;
     const Robot robot = contact_robot("ur5/ur5_robot.urdf", "ee_link");
@@ -233,7 +233,7 @@ TEST_CASE("three of four pushes of twice the Coulomb friction in motion are foun
                 found[moving] += within(push.length_s + 0.2) ? 1 : 0;
             }
         }
-        CHECK(4 * soon[1] >= 3 * total[1]);
+        CHECK(10 * soon[1] >= 9 * total[1]);
         std::cout << "rate " << rate << " per hour: in motion " << soon[1] << " of " << total[1]
                   << " pushes within 0.1 s, " << found[1] << " at all; at rest " << soon[0] << " of "
                   << total[0] << ", " << found[0] << " at all" << std::endl;
