@@ -215,7 +215,9 @@ TEST_CASE("pushes of twice the Coulomb friction in motion are found, nine of ten
         std::array<int, 2> total{};
         std::array<int, 2> soon{};
         std::array<int, 2> found{};
-        for (std::uint64_t seed = 2001; seed <= 2010; ++seed) {
+        for (std::uint64_t number = 0; number < 20; ++number) {
+            // results on the first ten were known when the training was changed
+            const std::uint64_t seed = number + (number < 10 ? 2001 : 6991);
             json scenario = scenario_of(seed, duration_s);
             const std::vector<JointPush> pushes = add_pushes(scenario, seed, duration_s);
             const Recording recording = simulated(robot, scenario);
