@@ -34,15 +34,17 @@ double most_likely_sign_velocity(
     const std::function<std::unique_ptr<Regressor>(double sign_velocity)>& regressor_at) {
     const TrainingData spaced = spaced_data(data, options.every);
     TrainingOptions quick = quick_options(options);
+    std::unique_ptr<Regressor> regressor = regressor_at(usual_sign_velocity);
+    quick.physics.regressor = regressor.get();
+    check_options(quick, data);
+    check_training_data(data, quick.input);
+    const TrainingSetup setup(spaced, quick); // reads the regressor of `quick` anew in every fit
+    check_outputs_vary(setup);
     double best = usual_sign_velocity;
     double most = -std::numeric_limits<double>::infinity();
     for (const double candidate : candidates) {
-        const std::unique_ptr<Regressor> regressor = regressor_at(candidate);
+        regressor = regressor_at(candidate);
         quick.physics.regressor = regressor.get();
-        check_options(quick, data);
-        check_training_data(data, quick.input);
-        const TrainingSetup setup(spaced, quick);
-        check_outputs_vary(setup);
         const double log_likelihood = fit_by_likelihood(setup, {}).record.log_likelihood;
         if (log_likelihood > most) {
             most = log_likelihood;

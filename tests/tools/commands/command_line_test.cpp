@@ -132,12 +132,15 @@ TEST_CASE("train prints the results of its physics") {
     CHECK_THAT(estimated.out, Catch::Matchers::ContainsSubstring(
                                   "; each represents a determined combination of parameters\n"));
     CHECK_THAT(estimated.out, Catch::Matchers::ContainsSubstring(" (estimated)"));
-    const Outcome given = run_program(directory, train + "--torque-constants 13,13,13,9,9,9.5 --centred");
+    const Outcome given =
+        run_program(directory, train + "--torque-constants 13,13,13,9,9,9.5 --centred --own-motion");
     CHECK_THAT(given.out, Catch::Matchers::ContainsSubstring(
                               "torque constants (N m/A): 13 (given), 13 (given), 13 (given), 9 (given), "
                               "9 (given), 9.5 (given)\n"));
     CHECK_THAT(given.error,
                Catch::Matchers::ContainsSubstring("note: --centred is ignored: model P does not read it\n"));
+    CHECK_THAT(given.error, Catch::Matchers::ContainsSubstring(
+                                "note: --own-motion is ignored: input STD does not read it\n"));
 }
 
 TEST_CASE("a replay of a recording with other outputs than the model is rejected") {

@@ -11,6 +11,7 @@
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/training/model_training.hpp"
+#include "tools/training/sign_velocity.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -67,7 +68,7 @@ std::vector<std::string> trainable_names(const ModelExtension& extension) {
 }
 
 RobotPhysics physics_of(const DiagnosisWork& work, std::vector<std::string> names) {
-    RobotPhysics physics{work.signals->robot, std::move(names), 0.05, {}};
+    RobotPhysics physics{work.signals->robot, std::move(names), usual_sign_velocity, {}};
     if (work.signals->kind == OutputKind::motor_current) {
         physics.torque_constants = to_vector(Eigen::VectorXd(work.torque_gains.cwiseInverse()));
     }

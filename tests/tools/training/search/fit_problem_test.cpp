@@ -10,7 +10,6 @@
 
 #include <Eigen/Cholesky>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -67,15 +66,13 @@ void check_gradient(const tools::Likelihood& likelihood, const VectorXd& theta) 
     const auto value_at = [&](const VectorXd& at) {
         return likelihood.evaluate(at)->minus_two_log_likelihood;
     };
-    const VectorXd truth = dfdyn::tests::differences(value_at, theta, 1e-3);
+    // Where two variances of the prior are equally likely the value has a kink. A longer step may cross it.
+    const VectorXd truth = dfdyn::tests::differences(value_at, theta, 1e-4);
     if (truth.isZero(0)) { // physics alone does not depend on the gains of the input
         CHECK(value->gradient.isZero(0));
-        return;
+    } else {
+        CHECK(dfdyn::tests::relative_error(value->gradient, truth) < 2e-6);
     }
-    // Where two variances of the prior are equally likely the value has a kink; a shorter step avoids it.
-    const VectorXd closer = dfdyn::tests::differences(value_at, theta, 1e-4);
-    CHECK(std::min(dfdyn::tests::relative_error(value->gradient, truth),
-                   dfdyn::tests::relative_error(value->gradient, closer)) < 2e-6);
 }
 
 TEST_CASE("the gradients of all models with all inputs equal finite differences") {
