@@ -21,6 +21,11 @@ constexpr std::array of_stribeck{sign_velocity, stribeck_velocity};
 constexpr std::array of_ripple{EffectConstant{"cycles_per_rev", &EffectModel::cycles_per_rev, true, false},
                                EffectConstant{"phase", &EffectModel::phase, false, false}};
 
+/// Of the joint's effort limit. With larger offsets a model of one motion would explain errors of the weight
+/// by offsets, which are wrong in other postures.
+constexpr double offset_share = 0.005;
+constexpr double rotor_share = 0.1; ///< of the robot's inertia about the joint, with the arm stretched
+
 std::string wave(const EffectModel& effect) {
     return "sin(" + number_text(effect.cycles_per_rev) + " q + " + number_text(effect.phase) + ")";
 }
@@ -52,7 +57,8 @@ constinit const EffectKind rotor_inertia{.name = "rotor_inertia",
                                          .identity = RotorInertia<1>::identity,
                                          .parameter = "inertia",
                                          .unit = "kg·m²",
-                                         .size = ParameterSize::inertia};
+                                         .size = ParameterSize::inertia,
+                                         .expected_share = rotor_share};
 constinit const EffectKind joint_spring{.name = "joint_spring",
                                         .firmware_type = "JointSpring",
                                         .identity = JointSpring<1>::identity,
@@ -70,7 +76,8 @@ constinit const EffectKind torque_offset{.name = "torque_offset",
                                          .identity = OutputOffset<1>::identity,
                                          .parameter = "offset",
                                          .unit = "N·m",
-                                         .at_joint = false};
+                                         .at_joint = false,
+                                         .expected_share = offset_share};
 constinit const EffectKind ft_bias{.name = "ft_bias",
                                    .firmware_type = "OutputOffset",
                                    .identity = OutputOffset<1>::identity,

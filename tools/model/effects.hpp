@@ -35,6 +35,7 @@ struct EffectKind {
     const char* unit;
     bool at_joint = true; ///< acts on a joint, so that the outputs must be torques
     ParameterSize size = ParameterSize::effort;
+    double expected_share = 1; ///< standard deviation of the parameter's prior, in units of its size
     std::span<const EffectConstant> constants = {};
     /// Returns the function that the parameter multiplies, for an effect whose constants only a diagnosis can
     /// identify. Null for effects that training can add at every joint.

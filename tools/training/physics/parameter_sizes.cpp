@@ -19,6 +19,8 @@ constexpr double placeholder_efforts = 100;  ///< times m g r
 constexpr double placeholder_velocity = 100; ///< rad/s, m/s
 constexpr double shortest_reach = 0.01;
 constexpr double unknown_mass = 1000;
+constexpr double link_share = 0.3;  ///< of known masses: error of a robot's file, one standard deviation
+constexpr double tool_share = 0.05; ///< of the robot's mass and reach: a tool that the file lacks
 
 double travel(const RobotJoint& joint) {
     return joint.prismatic && joint.lower ? std::max(std::abs(*joint.lower), std::abs(*joint.upper)) : 0;
@@ -42,21 +44,37 @@ double reach_of(const Robot& robot, std::size_t first) {
     return std::max(reach, to_joint + robot.tip_placement.translation().norm());
 }
 
+/// Sum of the file's masses of joint `first` and everything beyond it.
+double known_mass(const Robot& robot, std::size_t first) {
+    double mass = 0;
+    for (std::size_t i = first; i < robot.joints.size(); ++i) {
+        mass += std::max(robot.joints[i].inertia[0], 0.0);
+    }
+    return mass;
+}
+
 /// Mass of joint `first` and everything beyond it. Where the file has none, it is not more than that of the
 /// whole robot.
 double mass_of(const Robot& robot, std::size_t first, double reach) {
-    double mass = 0, whole = 0, effort = 0;
-    for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-        const double own = std::max(robot.joints[i].inertia[0], 0.0);
-        whole += own;
-        mass += i >= first ? own : 0;
-        effort = i >= first ? std::max(effort, robot.joints[i].effort.value_or(0)) : effort;
-    }
+    const double mass = known_mass(robot, first);
     if (mass > 0) {
         return mass;
     }
+    double effort = 0;
+    for (std::size_t i = first; i < robot.joints.size(); ++i) {
+        effort = std::max(effort, robot.joints[i].effort.value_or(0));
+    }
+    const double whole = known_mass(robot, 0);
     const double possible = effort > 0 ? effort / (gravity * reach) : unknown_mass;
     return whole > 0 ? std::min(possible, whole) : possible;
+}
+
+/// Sizes of the parameters of a body with this mass, whose farthest point is at `reach`.
+InertialParameters body_of(double mass, double reach) {
+    InertialParameters sizes;
+    sizes << mass, Eigen::Vector3d::Constant(mass * reach),
+        Eigen::Matrix<double, 6, 1>::Constant(mass * reach * reach);
+    return sizes;
 }
 
 /// Mass and reach of a robot from one of its joints on, and quantities derived from them.
@@ -66,12 +84,7 @@ struct MachineSize {
     explicit MachineSize(const Robot& robot, std::size_t first = 0)
         : reach(reach_of(robot, first)), mass(mass_of(robot, first, reach)) {}
 
-    InertialParameters body() const {
-        InertialParameters sizes;
-        sizes << mass, Eigen::Vector3d::Constant(mass * reach),
-            Eigen::Matrix<double, 6, 1>::Constant(mass * reach * reach);
-        return sizes;
-    }
+    InertialParameters body() const { return body_of(mass, reach); }
 
     double weight() const { return mass * gravity; }
 
@@ -98,6 +111,17 @@ struct MachineSize {
         return size == ParameterSize::effort_per_velocity ? torque(joint) / velocity(joint) : torque(joint);
     }
 };
+
+/// Prior standard deviations of the parameters of a joint's link. The last link may carry a tool.
+InertialParameters link_deviations(const Robot& robot, std::size_t joint) {
+    const MachineSize beyond(robot, joint);
+    const InertialParameters own = (known_mass(robot, joint) > 0 ? link_share : 1) * beyond.body();
+    if (joint + 1 < robot.joints.size()) {
+        return own;
+    }
+    const MachineSize machine(robot);
+    return own + body_of(tool_share * machine.mass, beyond.reach + tool_share * machine.reach);
+}
 
 OutputKind outputs_of(const ChainModel& chain) {
     return chain.sensor ? OutputKind::wrench : OutputKind::joint_torque;
@@ -133,9 +157,12 @@ Eigen::VectorXd parameter_deviations(const Robot& robot, const ChainModel& chain
     const auto bodies = static_cast<std::size_t>(body_count(robot, outputs_of(chain)));
     const std::size_t joints = robot.joints.size();
     for (std::size_t body = 0; body < bodies; ++body) {
-        const std::size_t joint = joints - std::min(joints, bodies - body);
         deviations.segment<inertial_parameters>(inertial_parameters * static_cast<Eigen::Index>(body)) =
-            MachineSize(robot, joint).body();
+            link_deviations(robot, joints - std::min(joints, bodies - body));
+    }
+    auto effect = deviations.end() - static_cast<Eigen::Index>(effects.size());
+    for (const EffectModel& one : effects) {
+        *effect++ *= effect_kind(one.name).expected_share;
     }
     return deviations;
 }

@@ -36,8 +36,11 @@ Eigen::VectorXd parameter_sizes(const Robot& robot, const ChainModel& chain,
 Eigen::VectorXd expected_parameters(const Robot& robot, const ChainModel& chain,
                                     const std::vector<EffectModel>& effects);
 
-/// Returns the prior standard deviation of each parameter about expected_parameters(): P entries > 0. As
-/// parameter_sizes(), with the mass and reach of the links from the body's joint to the tip.
+/// Returns the prior standard deviation of each parameter about expected_parameters(): P entries > 0.
+/// - of a link: 0.3 times the sizes of a body with mass and reach of the links from its joint to the tip, or
+///   once if the file contains none of their masses;
+/// - of the last link, in addition: a tool with 0.05 times the robot's mass and, beyond the link, reach;
+/// - of an effect: its size times EffectKind::expected_share.
 Eigen::VectorXd parameter_deviations(const Robot& robot, const ChainModel& chain,
                                      const std::vector<EffectModel>& effects);
 

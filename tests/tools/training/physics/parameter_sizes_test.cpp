@@ -19,6 +19,13 @@ VectorXd sizes_of(const Robot& robot, const std::vector<std::string>& effects = 
     return parameter_sizes(robot, chain, effect_models(effects, chain, 0.05));
 }
 
+Robot without_masses(Robot robot) {
+    for (RobotJoint& joint : robot.joints) {
+        joint.inertia.setZero();
+    }
+    return robot;
+}
+
 TEST_CASE("the size of each parameter follows from mass and reach and limits") {
     Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg, 1 m from joint to joint
     robot.tip_placement.translation() = Eigen::Vector3d(0.6, 0, 0);
@@ -46,28 +53,51 @@ TEST_CASE("the reach of a link is at least the distance of its centre of mass") 
     CHECK(sizes_of(robot)[3] == Approx(0.5 * 0.1));
 }
 
-TEST_CASE("the prior deviation of a parameter follows from the links beyond its joint") {
+TEST_CASE("the prior deviation of a link's parameter is three tenths of the links beyond its joint") {
     Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg, 1 m from joint to joint
     robot.tip_placement.translation() = Eigen::Vector3d(0.6, 0, 0);
     const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
-    const auto effects = effect_models({"coulomb_friction"}, chain, 0.05);
+    const VectorXd deviations = parameter_deviations(robot, chain, {});
+    CHECK(deviations[0] == Approx(0.3 * 2));
+    CHECK(deviations[3] == Approx(0.3 * 2 * 1.6));
+    CHECK(deviations[9] == Approx(0.3 * 2 * 1.6 * 1.6));
+    CHECK(parameter_deviations(without_masses(robot), chain, {})[0] == 1000);
+}
+
+TEST_CASE("the last link may carry a tool of a twentieth of the robot's mass") {
+    Robot robot = dfdyn::tests::planar_arm(9.81);
+    robot.tip_placement.translation() = Eigen::Vector3d(0.6, 0, 0);
+    const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
+    const VectorXd deviations = parameter_deviations(robot, chain, {});
+    const double tool = 0.05 * 2;
+    const double reach = 0.6 + 0.05 * 1.6;
+    CHECK(deviations[10] == Approx(0.3 + tool));
+    CHECK(deviations[13] == Approx(0.3 * 0.6 + tool * reach));
+    CHECK(deviations[19] == Approx(0.3 * 0.6 * 0.6 + tool * reach * reach));
+}
+
+TEST_CASE("the prior of an offset or a rotor is narrower than the largest plausible value") {
+    const Robot robot = dfdyn::tests::planar_arm(9.81);
+    const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
+    const auto effects = effect_models({"coulomb_friction", "rotor_inertia", "torque_offset"}, chain, 0.05);
     const VectorXd deviations = parameter_deviations(robot, chain, effects);
-    CHECK(deviations[0] == Approx(2));
-    CHECK(deviations[9] == Approx(2 * 1.6 * 1.6));
-    CHECK(deviations[10] == Approx(1));
-    CHECK(deviations[13] == Approx(1 * 0.6));
-    CHECK(deviations[19] == Approx(1 * 0.6 * 0.6));
-    CHECK(deviations.tail(2) == parameter_sizes(robot, chain, effects).tail(2));
-    const VectorXd expected = expected_parameters(robot, chain, effects);
+    const VectorXd sizes = parameter_sizes(robot, chain, effects);
+    CHECK(deviations.segment(20, 2) == sizes.segment(20, 2));
+    CHECK((deviations.segment(22, 2) - 0.1 * sizes.segment(22, 2)).norm() < 1e-12);
+    CHECK((deviations.tail(2) - 0.005 * sizes.tail(2)).norm() < 1e-12);
+}
+
+TEST_CASE("the robot's own parameters are those of its file, without effects") {
+    const Robot robot = dfdyn::tests::planar_arm(9.81);
+    const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
+    const VectorXd expected =
+        expected_parameters(robot, chain, effect_models({"coulomb_friction"}, chain, 0.05));
     CHECK(expected.head(20) == nominal_parameters(robot, OutputKind::joint_torque));
     CHECK(expected.tail(2).norm() == 0);
 }
 
 TEST_CASE("without masses the sizes follow from efforts and without efforts from one tonne") {
-    Robot robot = dfdyn::tests::planar_arm(9.81);
-    for (RobotJoint& joint : robot.joints) {
-        joint.inertia.setZero();
-    }
+    Robot robot = without_masses(dfdyn::tests::planar_arm(9.81));
     CHECK(sizes_of(robot)[0] == 1000);
     robot.joints[1].effort = 9.81;
     CHECK(sizes_of(robot)[0] == Approx(1)); // kg, at a distance of 1 m
@@ -77,7 +107,7 @@ TEST_CASE("a link without mass cannot be heavier than the whole robot") {
     Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg
     robot.joints[1].inertia.setZero();
     const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
-    CHECK(parameter_deviations(robot, chain, {})[10] == Approx(1));
+    CHECK(parameter_deviations(robot, chain, {})[10] == Approx(1 + 0.05)); // and a tool
 }
 
 TEST_CASE("the nominal parameters of real robots are within their sizes") {
