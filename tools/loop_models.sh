@@ -12,6 +12,6 @@ commission() {
 # train_model DFDYN FOLDER URDF TIP MODEL OUT: OUT, a model.json, from FOLDER/nominal.csv; the training's summary on standard output.
 train_model() {
     "$1" train --robot "$3" --tip "$4" --log "$2/nominal.csv" --outputs tau --model "$5" \
-        --effects viscous_friction,coulomb_friction,rotor_inertia,torque_offset --own-motion --sign-velocity 0.05 --features 60 --forgetting 0.999 \
+        --effects viscous_friction,coulomb_friction,rotor_inertia,torque_offset --sign-velocity 0.05 --features 60 --forgetting 0.999 \
         --likelihood-rows 500 --starts 4 --refinement 10 -o "$6"
 }

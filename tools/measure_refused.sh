@@ -37,7 +37,6 @@ one() {
     local model=$1 urdf=$2 tip=$3 features=$4 a=$5 physics=() name b
     shift 5
     [[ $model == NP ]] || physics=(--robot "$data/$urdf" --tip "$tip" "${effects[@]}")
-    [[ $model == SPK ]] && physics+=(--own-motion)
     if [[ $model == P ]]; then
         physics+=(--input DFSR --lags 12)
     else

@@ -87,8 +87,8 @@ std::string train(const TemporaryDirectory& directory, const std::string& scenar
                   const std::string& bus = "small_arm_loop") {
     const std::string folder = (directory.path() / "nominal").string();
     const std::string nominal = run(call("loop --simulate --duration 10.1 -o " + folder, scenario, bus));
-    run(std::string(DFDYN_PROGRAM) + " train --outputs tau --model P --own-motion --starts 1 --tip tool" +
-        robot + " --effects viscous_friction,rotor_inertia --log " + folder + "/nominal.csv -o " +
+    run(std::string(DFDYN_PROGRAM) + " train --outputs tau --model P --starts 1 --tip tool" + robot +
+        " --effects viscous_friction,rotor_inertia --log " + folder + "/nominal.csv -o " +
         (directory.path() / "m.json").string());
     return nominal;
 }

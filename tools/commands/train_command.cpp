@@ -49,7 +49,7 @@ struct TrainOptions {
     std::string prior = "scaled";
     std::vector<std::string> effects;
     std::optional<double> sign_velocity;
-    bool own_motion = false;
+    bool own_motion = true;
     std::vector<double> torque_constants;
     ClockOptions clock;
     SizeOptions sizes;
@@ -72,9 +72,11 @@ void add_physics_options(CLI::App& command, TrainOptions& options) {
         ->check(one_of(words_of(trainable_effect_names())))
         ->type_name("NAME[,NAME...]");
     command
-        .add_option("--sign-velocity", options.sign_velocity,
-                    "Coulomb friction is tanh(qd / this); at this velocity (rad/s) it has three quarters of "
-                    "its level; default: 0.05, with --own-motion the most likely of 0.002 to 0.1")
+        .add_option(
+            "--sign-velocity", options.sign_velocity,
+            "Coulomb friction is tanh(qd / this); at this velocity (rad/s) it has three quarters of "
+            "its level; default: the most likely of 0.002 to 0.1; 0.05 with --shared-motion, --hyper CV or "
+            "input STD")
         ->check(positive_number());
     command
         .add_option("--torque-constants", options.torque_constants,
@@ -82,10 +84,10 @@ void add_physics_options(CLI::App& command, TrainOptions& options) {
         ->delimiter(',')
         ->check(positive_number())
         ->type_name("K1,K2...");
-    command.add_flag(
-        "--own-motion", options.own_motion,
-        "Inputs of positions: the physics computes velocity and acceleration with rows of its own, "
-        "which keep the scale of every motion");
+    command.add_flag("--own-motion,!--shared-motion", options.own_motion,
+                     "Inputs of positions: the physics computes velocity and acceleration with rows of its "
+                     "own, which keep the scale of every motion (default), or, as in the paper, with those "
+                     "of the features");
     command
         .add_option("--prior", options.prior,
                     "Prior of the physical parameters: gamma^2 is equal for columns of equal size (scaled), "
@@ -335,7 +337,7 @@ void add_train_command(CLI::App& app, Command& chosen) {
     add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn train --log run.csv --rows :3400 --outputs i --input DFR -o model.json\n"
-        "  dfdyn train --log run.csv --outputs tau --model SPK --robot arm.urdf --tip tool0 --own-motion"
+        "  dfdyn train --log run.csv --outputs tau --model SPK --robot arm.urdf --tip tool0"
         " --effects " +
         friction +
         " -o model.json\n"

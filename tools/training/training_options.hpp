@@ -39,7 +39,7 @@ enum class PhysicsMotion {
 /// The physics of P, SP, SP2 and SPK.
 struct PhysicsOptions {
     const Regressor* regressor = nullptr; ///< of the recording's joints and outputs; must outlive training
-    PhysicsMotion motion = PhysicsMotion::of_input;
+    PhysicsMotion motion = PhysicsMotion::free;
     PriorForm prior = PriorForm::scaled;
     double column_threshold = 1e-3; ///< of select_columns(), in (0, 1)
     /// P: largest plausible magnitude of each parameter of the regressor, > 0, in the parameter's own unit;

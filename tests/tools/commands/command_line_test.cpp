@@ -101,7 +101,7 @@ TEST_CASE("train reports the options that it ignores and continues") {
     const std::string train = "train --log " + log_file + quick + "-o " + in + "/m.json ";
     CHECK(notes(run_program(directory, train).error).empty());
     const Outcome nonparametric =
-        run_program(directory, train + "--effects viscous_friction --prior unit --own-motion "
+        run_program(directory, train + "--effects viscous_friction --prior unit --shared-motion "
                                        "--torque-constants 1,1,1,1,1,1 --no-relevance");
     CHECK(nonparametric.status == 0);
     CHECK(line_count(notes(nonparametric.error)) == 5);
@@ -133,7 +133,7 @@ TEST_CASE("train prints the results of its physics") {
                                   "; each represents a determined combination of parameters\n"));
     CHECK_THAT(estimated.out, Catch::Matchers::ContainsSubstring(" (estimated)"));
     const Outcome given =
-        run_program(directory, train + "--torque-constants 13,13,13,9,9,9.5 --centred --own-motion");
+        run_program(directory, train + "--torque-constants 13,13,13,9,9,9.5 --centred --shared-motion");
     CHECK_THAT(given.out, Catch::Matchers::ContainsSubstring(
                               "torque constants (N m/A): 13 (given), 13 (given), 13 (given), 9 (given), "
                               "9 (given), 9.5 (given)\n"));

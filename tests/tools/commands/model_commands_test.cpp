@@ -129,14 +129,14 @@ TEST_CASE("models with a robot are trained and replayed with one command each") 
     const Call calls[] = {
         {"--outputs tau --model P --input DFSR --effects viscous_friction,coulomb_friction,torque_offset",
          0.08},
-        {"--outputs wrench --model P --own-motion --effects ft_bias --forgetting 0.999", 0.15},
+        {"--outputs wrench --model P --effects ft_bias --forgetting 0.999", 0.15},
         {"--outputs tau --model P --input STD --derivatives measured --hyper CV", 0.40},
         {"--outputs tau --model SP --input STD --derivatives estimated --effects viscous_friction", 0.13},
-        {"--outputs tau --model SP --input DFW --own-motion", 0.13},
+        {"--outputs tau --model SP --input DFW", 0.13},
         {"--outputs tau --model SP2 --input DFSR --lags 10 --hyper CV", 0.09},
         {"--outputs i --model SP --torque-constants 5,3 --effects coulomb_friction,rotor_inertia", 0.07},
-        {"--outputs i --model SPK --effects stribeck_friction,joint_spring", 0.10},
-        {"--outputs tau --model SPK --own-motion --prior unit --input DF", 0.12},
+        {"--outputs i --model SPK --shared-motion --effects stribeck_friction,joint_spring", 0.10},
+        {"--outputs tau --model SPK --prior unit --input DF", 0.12},
         {"--outputs tau --model SPK --prior diagonal --input STD --derivatives measured", 0.10},
         {"--outputs wrench --model SPK --effects ft_bias --ft-joint sensor", 0.12},
     };
@@ -182,7 +182,7 @@ TEST_CASE("a replay compares a model with its rigid body and mentions once if th
 
 TEST_CASE("training with a robot repeats byte for byte") {
     const Bench bench;
-    const std::string arguments = robot + "--outputs tau --model SPK --own-motion --effects viscous_friction";
+    const std::string arguments = robot + "--outputs tau --model SPK --effects viscous_friction";
     REQUIRE(bench.train(arguments).status == 0);
     REQUIRE(bench.train(arguments, "again.json").status == 0);
     CHECK(file_content(bench.path("model.json")) == file_content(bench.path("again.json")));
@@ -208,7 +208,7 @@ TEST_CASE("unusable training options for a robot are rejected with one line") {
         {robot + tau + "SPK --hyper CV", "expected model NP, P or SP2 for cross validation, found SPK"},
         {robot + tau + "NP --hyper CV --input DFR", "cross validation, found DFR"},
         {robot + tau + "SP --input DFR --lags 4 --features-per-joint 6", "expected 1 to lags + 1 rows"},
-        {robot + tau + "SP --input DFR --features-per-joint 2", "expected at least 3 rows per joint"},
+        {robot + tau + "SP --shared-motion --features-per-joint 2", "expected at least 3 rows per joint"},
         {robot + tau + "P --lags 1", "expected at least 2 lags, found 1"},
         {robot + "--outputs i --model P --torque-constants 5", "expected 2, one per joint, found 1"},
         {robot + "--outputs i --model P --torque-constants 5,-3",

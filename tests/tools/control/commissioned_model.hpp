@@ -46,7 +46,6 @@ inline tools::LoopModel commissioned_model(const tools::Robot& robot, const tool
     options.starts = 2;
     options.refinement_evaluations = 0;
     options.forgetting_factor = 0.999;
-    options.physics.motion = tools::PhysicsMotion::free;
     training.physics = tools::RobotPhysics{
         robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"}, 0.05, {}};
     const std::vector<tools::Recording> recordings{commissioning(robot, scenario)};

@@ -122,7 +122,6 @@ LoopModel commissioned(const LoopArm& arm, const Structure* kind) {
     training.options.likelihood_rows = 500;
     training.options.starts = 4;
     training.options.refinement_evaluations = 10;
-    training.options.physics.motion = PhysicsMotion::free;
     training.physics = RobotPhysics{
         arm.robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"}, 0.05, {}};
     const std::vector<Recording> recordings{commissioning(arm)};

@@ -55,7 +55,6 @@ TEST_CASE("the physics learns an arm's weight from its motion alone") {
     training.options.starts = 1;
     training.options.evaluations_per_start = 60;
     training.options.refinement_evaluations = 0;
-    training.options.physics.motion = PhysicsMotion::free;
     const VectorXd constants = *scenario.torque_sensor.torque_constant;
     training.physics =
         RobotPhysics{robot,

@@ -106,6 +106,8 @@ TEST_CASE("inconsistent options are rejected") {
     }
     SECTION("rows that the physics cannot share") {
         arm.options.rows_per_joint = 2;
+        CHECK(arm.message().empty());
+        arm.options.physics.motion = dfdyn::tools::PhysicsMotion::of_input;
         CHECK(arm.message() ==
               "training options: expected at least 3 rows per joint for the physics to share, found 2");
     }

@@ -36,7 +36,6 @@ TEST_CASE("the sign velocity of the recording's friction is found") {
     }
     TrainingOptions options;
     options.lags = 6;
-    options.physics.motion = PhysicsMotion::free;
     CHECK(most_likely_sign_velocity(data, options, regressor_at) == truth);
 }
 

@@ -46,7 +46,6 @@ ModelTraining quick_training(const Structure& structure) {
     ModelTraining training;
     training.options.model = &structure;
     training.options.input = InputKind::DFR;
-    training.options.physics.motion = PhysicsMotion::free;
     training.options.feature_count = 100;
     training.options.likelihood_rows = 300;
     training.options.starts = 1;
