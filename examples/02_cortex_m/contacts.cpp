@@ -38,7 +38,8 @@ bool contact(const Estimator::Sample& sample) {
         for (int k = 0; k < joints; ++k) {
             error[k] = sample.output[k] - estimate.prediction[k];
         }
-        detector.tick(sample.time_ns, sample.position.data(), error.data(), estimate.prediction.data());
+        detector.tick(sample.time_ns, sample.position.data(), error.data(), estimate.prediction.data(),
+                      estimate.standard_deviation.data());
     } else {
         detector.skip(sample.time_ns);
     }

@@ -56,11 +56,12 @@ struct OutputModel {
 /// Deviations of joints without contact (see dfdyn::ContactDetector), m x 3: per joint stationary, changing,
 /// moving. Empty: not measured, because the outputs are a wrench or the model is of an older version.
 struct ContactModel {
-    std::vector<double> limit;          ///< smallest deviation of a contact, > 0
-    std::vector<double> usual;          ///< median, >= 0
-    std::vector<double> relative{};     ///< m: added limit per change of the prediction, >= 0
-    std::vector<double> speed{};        ///< m: largest usual, rad/s
-    std::vector<double> acceleration{}; ///< m: largest usual, rad/s²
+    std::vector<double> limit;                ///< smallest deviation of a contact, > 0
+    std::vector<double> usual;                ///< median, >= 0
+    std::vector<double> relative{};           ///< m: added limit per change of the prediction, >= 0
+    std::vector<double> speed{};              ///< m: largest usual, rad/s
+    std::vector<double> acceleration{};       ///< m: largest usual, rad/s²
+    std::vector<double> standard_deviation{}; ///< m: of a prediction, median, > 0; empty in older models
     /// Relative decrease of all limits per factor e of the rate of false contacts, from
     /// `contact_rate_per_hour` on. 0: unknown, the model is of an older version.
     double rate_slope = 0;

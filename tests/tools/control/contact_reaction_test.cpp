@@ -35,7 +35,12 @@ Scenario scenario_with(const std::string& fault) {
 LoopModel learned_model() {
     DFDYN_SEEDED_ENGINE(engine);
     LoopModel model{unlearned_model(engine, 1, 0.008, {"tau1"}, 40), "model", true};
-    model.model.contact = {{1, 1, 1}, {0.1, 0.1, 0.1}, {0.1}, {10}, {1000}, 0.05};
+    model.model.contact = {.limit = {1, 1, 1},
+                           .usual = {0.1, 0.1, 0.1},
+                           .relative = {0.1},
+                           .speed = {10},
+                           .acceleration = {1000},
+                           .rate_slope = 0.05};
     ClosedLoop loop(test_pendulum(), scenario_with("[]"), "test", &model);
     loop.run_to(learned_s, [](const ClosedLoopInstant&) {});
     model.learned = loop.loop().feed_forward().learned()->snapshot();

@@ -159,11 +159,13 @@ TEST_CASE("the limits of contacts read back, also those of older files without a
     model.contact.limit.assign(3 * outputs, 1.5);
     model.contact.usual.assign(3 * outputs, 0.25);
     CHECK(model_to_json(model).find("rate_slope") == std::string::npos);
+    CHECK(model_from_json(model_to_json(model), "m.json").contact.standard_deviation.empty());
     CHECK(model_from_json(model_to_json(model), "m.json").contact.rate_slope == 0);
     model.contact.relative.assign(outputs, 0.5);
     model.contact.speed.assign(outputs, 2);
     model.contact.acceleration.assign(outputs, 8);
     model.contact.rate_slope = 0.125;
+    model.contact.standard_deviation.assign(outputs, 0.75);
     const ContactModel read = model_from_json(model_to_json(model), "m.json").contact;
     CHECK(read.limit == model.contact.limit);
     CHECK(read.usual == model.contact.usual);
@@ -171,6 +173,7 @@ TEST_CASE("the limits of contacts read back, also those of older files without a
     CHECK(read.speed == model.contact.speed);
     CHECK(read.acceleration == model.contact.acceleration);
     CHECK(read.rate_slope == model.contact.rate_slope);
+    CHECK(read.standard_deviation == model.contact.standard_deviation);
     model.contact.relative[1] = -0.5;
     CHECK(refusal(model_to_json(model)) ==
           "m.json: contact.relative: expected numbers of at least 0, found \"-0.5\"");

@@ -37,12 +37,14 @@ struct Recipe {
     InputKind input;
     int lags;
     std::vector<std::string> effects;
-    PhysicsMotion motion = PhysicsMotion::of_input;
+    PhysicsMotion motion = PhysicsMotion::free;
 };
 
 /// With the options in docs/guide/monitor.md.
-const Recipe monitor_recipe{
-    InputKind::DFSR, 12, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"}};
+const Recipe monitor_recipe{InputKind::DFSR,
+                            12,
+                            {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"},
+                            PhysicsMotion::of_input};
 
 /// As `dfdyn train` computes the model.
 TrainedModel trained(const Recording& data, const Robot& robot, const Recipe& recipe) {
@@ -168,7 +170,8 @@ TEST_CASE(
     // Small differences between models decide about the weakest push.
     for (const Recipe& recipe :
          {Recipe{InputKind::DFR, 10, friction}, Recipe{InputKind::DFR, 10, with_rotors},
-          Recipe{InputKind::DFR, 10, friction, PhysicsMotion::free}}) {
+          Recipe{InputKind::DFR, 10, with_rotors, PhysicsMotion::of_input},
+          Recipe{InputKind::DFR, 10, friction, PhysicsMotion::of_input}}) {
         TrainedModel model = trained(first, robot, recipe);
         model.contact = measure_contact_limits(model, std::span(&first, 1));
         for (const bool learning : {false, true}) {

@@ -24,19 +24,14 @@ inline tools::Robot contact_robot(const std::string& urdf, const std::string& ti
 }
 
 /// Rigid body and friction with the limits of contacts, as `dfdyn train --starts` computes them.
-/// `own_motion`: with `--own-motion`.
 inline tools::TrainedModel contact_model(std::span<const tools::Recording> recordings,
-                                         const tools::Robot& robot, tools::OutputKind outputs, int starts,
-                                         bool own_motion = false) {
+                                         const tools::Robot& robot, tools::OutputKind outputs, int starts) {
     tools::ModelTraining training;
     training.options.model = &tools::structures::P;
     training.options.input = tools::InputKind::DFR;
     training.options.lags = 10;
     training.options.likelihood_rows = 600;
     training.options.starts = starts;
-    if (own_motion) {
-        training.options.physics.motion = tools::PhysicsMotion::free;
-    }
     training.physics = tools::RobotPhysics{
         robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"}, std::nullopt, {}};
     tools::TrainedModel model =

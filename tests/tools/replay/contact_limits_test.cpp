@@ -69,7 +69,8 @@ Exceeded exceeded(const TrainedModel& model, const ContactModel& contact, const 
         ++result.rows;
         std::ranges::transform(sample.position, position.begin(),
                                [](double x) { return static_cast<float>(x); });
-        watch.tick(sample.time_ns, position, prediction_errors(sample, tick), tick.prediction);
+        watch.tick(sample.time_ns, position, prediction_errors(sample, tick), tick.prediction,
+                   tick.standard_deviation);
         if (!counted && watch.detector().excess() >= 1) {
             ++result.stretches;
             counted = true;

@@ -99,7 +99,7 @@ const TrainedModel& simulated_model(const Robot& robot) {
         for (std::uint64_t seed = 1; seed <= 8; ++seed) {
             recordings.push_back(simulated(robot, scenario_of(seed, 60)));
         }
-        return contact_model(recordings, robot, OutputKind::motor_current, 1, true);
+        return contact_model(recordings, robot, OutputKind::motor_current, 1);
     }();
     return model;
 }
@@ -144,7 +144,8 @@ void add_contacts(const TrainedModel& model, const Recording& recording, Counts&
                   const std::vector<float> error = prediction_errors(sample, tick);
                   for (std::size_t i = 0; i < watches.size(); ++i) {
                       const bool before = watches[i]->detector().contact();
-                      const bool now = watches[i]->tick(sample.time_ns, position, error, tick.prediction);
+                      const bool now = watches[i]->tick(sample.time_ns, position, error, tick.prediction,
+                                                        tick.standard_deviation);
                       counts[i] += now && !before ? 1 : 0;
                   }
               });

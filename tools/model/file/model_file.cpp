@@ -51,6 +51,9 @@ ordered_json contact_to_json(const ContactModel& contact) {
         json["acceleration"] = singles(contact.acceleration);
         json["rate_slope"] = single(contact.rate_slope);
     }
+    if (!contact.standard_deviation.empty()) { // absent from older files
+        json["standard_deviation"] = singles(contact.standard_deviation);
+    }
     return json;
 }
 
@@ -193,6 +196,9 @@ ContactModel read_contact(const JsonReader& reader, int outputs) {
         contact.speed = reader.positive_numbers("speed", outputs);
         contact.acceleration = reader.positive_numbers("acceleration", outputs);
         contact.rate_slope = reader.number_within("rate_slope", 0, largest_rate_slope);
+    }
+    if (reader.has("standard_deviation")) { // absent from older files
+        contact.standard_deviation = reader.positive_numbers("standard_deviation", outputs);
     }
     return contact;
 }

@@ -278,7 +278,8 @@ std::string contact_text(const ContactModel& contact) {
     for (const ContactLimits<float>& joint : joints) {
         text += separator + ("    {.limit = " + array(joint.limit)) + ", .usual = " + array(joint.usual) +
                 ", .relative = " + literal(joint.relative) + ", .speed = " + literal(joint.speed) +
-                ", .acceleration = " + literal(joint.acceleration) + "}";
+                ", .acceleration = " + literal(joint.acceleration) +
+                ", .standard_deviation = " + literal(joint.standard_deviation) + "}";
         separator = ",\n";
     }
     return text + "};\n\n";

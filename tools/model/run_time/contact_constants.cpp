@@ -15,6 +15,8 @@ std::vector<ContactLimits<float>> contact_constants(const ContactModel& contact)
         limits[k].speed = contact.speed.empty() ? no_contact_limit : static_cast<float>(contact.speed[k]);
         limits[k].acceleration =
             contact.acceleration.empty() ? no_contact_limit : static_cast<float>(contact.acceleration[k]);
+        limits[k].standard_deviation =
+            contact.standard_deviation.empty() ? 0 : static_cast<float>(contact.standard_deviation[k]);
     }
     return limits;
 }

@@ -72,7 +72,7 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
         std::ranges::transform(sample.position, position_.begin(),
                                [](double x) { return static_cast<float>(x); });
         set_errors(sample, tick, error_);
-        return watch_.tick(sample.time_ns, position_, error_, tick.prediction);
+        return watch_.tick(sample.time_ns, position_, error_, tick.prediction, tick.standard_deviation);
     }
 
     void note(std::int64_t time_ns, bool contact) {

@@ -45,8 +45,9 @@ class ContactWatch {
     /// Adds a tick. Returns true during a contact, which ends a calibration: the motion after it is not that
     /// of the work. Allocates nothing.
     bool tick(std::int64_t time_ns, std::span<const float> position, std::span<const float> error,
-              std::span<const float> prediction) {
-        const bool contact = detector_.tick(time_ns, position.data(), error.data(), prediction.data());
+              std::span<const float> prediction, std::span<const float> standard_deviation) {
+        const bool contact = detector_.tick(time_ns, position.data(), error.data(), prediction.data(),
+                                            standard_deviation.data());
         if (calibration_ != nullptr) {
             calibration_->tick(time_ns, detector_);
             if (contact) {

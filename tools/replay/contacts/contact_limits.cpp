@@ -53,7 +53,7 @@ struct PredictedRow {
     std::size_t pass = 0;
     std::int64_t time_ns = 0;
     bool begins = false; ///< does not follow the row before
-    std::vector<float> position, error, prediction;
+    std::vector<float> position, error, prediction, standard_deviation;
 };
 
 /// Appends the rows from `first` to `last` that are predicted, without learning.
@@ -69,7 +69,8 @@ void predict_rows(RuntimeEstimator& estimator, std::span<const Recording> record
                                            !follows,
                                            {sample.position.begin(), sample.position.end()},
                                            prediction_errors(sample, tick),
-                                           {tick.prediction.begin(), tick.prediction.end()}});
+                                           {tick.prediction.begin(), tick.prediction.end()},
+                                           {tick.standard_deviation.begin(), tick.standard_deviation.end()}});
                       follows = true;
                   }
               });
@@ -105,9 +106,24 @@ void detect(std::span<const PredictedRow> rows, const ContactModel& contact, Use
         if (row.begins) {
             watch.interrupt();
         }
-        watch.tick(row.time_ns, row.position, row.error, row.prediction);
+        watch.tick(row.time_ns, row.position, row.error, row.prediction, row.standard_deviation);
         use(row, watch.detector());
     }
+}
+
+/// Returns the median standard deviation of the trained model's predictions, per joint.
+std::vector<double> usual_deviations(std::span<const PredictedRow> rows, std::size_t joints) {
+    std::vector<double> usual;
+    for (std::size_t k = 0; k < joints; ++k) {
+        std::vector<double> values;
+        for (const PredictedRow& row : rows) {
+            if (row.pass == block_count) {
+                values.push_back(row.standard_deviation[k]);
+            }
+        }
+        usual.push_back(values.empty() ? double{no_contact_limit} : median(std::move(values)));
+    }
+    return usual;
 }
 
 /// Returns the deviations of each joint without limits.
@@ -320,6 +336,7 @@ ContactModel measure_contact_limits(const TrainedModel& model, std::span<const R
         add_joint(contact, deviations[k], least_limit * model.outputs.noise_std[k]);
     }
     set_rate(contact, comparable_peaks(excess_peaks(rows, contact, model.sample_period_s)));
+    contact.standard_deviation = usual_deviations(rows, deviations.size());
     return contact;
 }
 

@@ -30,15 +30,16 @@ namespace dfdyn {
 ///         for (int k = 0; k < joints; ++k) {
 ///             error[k] = sample.output[k] - estimate.prediction[k];
 ///         }
-///         detector.tick(sample.time_ns, sample.position.data(), error, estimate.prediction.data());
+///         detector.tick(sample.time_ns, sample.position.data(), error, estimate.prediction.data(),
+///                       estimate.standard_deviation.data());
 ///     } else {
 ///         detector.skip(sample.time_ns);
 ///     }
 ///
 /// Do not use `Estimate::innovation`: it is 0 for an output beyond the model's limit, as in the hardest
 /// collisions. After an interruption during a contact, the push that remains becomes the baseline. Positions,
-/// errors and predictions have `joints` values in the same order; joints count from 0. No heap. Cost: `cost`
-/// per joint and tick, and four exponentials. Memory: 19 numbers per joint.
+/// errors, predictions and standard deviations have `joints` values in the same order; joints count from 0.
+/// No heap. Cost: `cost` per joint and tick, and four exponentials. Memory: 20 numbers per joint.
 template <class Scalar, int joints>
 class ContactDetector {
   public:
@@ -61,13 +62,13 @@ class ContactDetector {
         }
     }
 
-    /// Adds the positions (rad), errors and predictions (the outputs' unit) at a stamp. Returns true during a
-    /// contact. Values that are not finite, and positions beyond ± `largest_position`, interrupt. After a
-    /// gap, or if the stamp decreases, the comparison starts anew with these values, and a contact ends. A
-    /// sample with the stamp of the last one is ignored, up to `most_repeats` in a row: a sensor slower than
-    /// the loop, or a repeated frame.
-    bool tick(std::int64_t time_ns, const Scalar* position, const Scalar* error,
-              const Scalar* prediction) noexcept {
+    /// Adds the positions (rad), errors, predictions and the predictions' standard deviations (the outputs'
+    /// unit) at a stamp. Returns true during a contact. Values that are not finite, and positions beyond ±
+    /// `largest_position`, interrupt. After a gap, or if the stamp decreases, the comparison starts anew with
+    /// these values, and a contact ends. A sample with the stamp of the last one is ignored, up to
+    /// `most_repeats` in a row: a sensor slower than the loop, or a repeated frame.
+    bool tick(std::int64_t time_ns, const Scalar* position, const Scalar* error, const Scalar* prediction,
+              const Scalar* standard_deviation) noexcept {
         if (repeats(time_ns)) {
             return contact_;
         }
@@ -86,6 +87,9 @@ class ContactDetector {
         Scalar sum = 0;
         Scalar largest = 0;
         for (int k = 0; k < count_; ++k) {
+            if (!contact_) {
+                joints_[k].follow_doubt(standard_deviation[k], limits_[k], steps);
+            }
             const Scalar share =
                 joints_[k].follow(error[k], prediction[k], limits_[k], range_, contact_, steps);
             const Scalar square = share * share;
@@ -145,6 +149,8 @@ class ContactDetector {
     [[nodiscard]] Scalar deviation(int joint) const noexcept { return joints_[joint].deviation(); }
     /// Returns the magnitude of a joint's deviation relative to its limit in this tick, >= 0.
     [[nodiscard]] Scalar share(int joint) const noexcept { return joints_[joint].share(); }
+    /// Returns the factor by which a joint's limit grows with its prediction's standard deviation, >= 1.
+    [[nodiscard]] Scalar doubt(int joint) const noexcept { return joints_[joint].doubt(); }
     /// Returns the recent change of a joint's prediction, in the output's unit.
     [[nodiscard]] Scalar predicted_change(int joint) const noexcept {
         return joints_[joint].predicted_change();

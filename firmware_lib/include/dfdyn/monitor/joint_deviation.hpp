@@ -23,6 +23,7 @@ struct ContactLimits {
     Scalar relative;                  ///< added limit per recent change of the prediction, >= 0
     Scalar speed;                     ///< rad/s, largest usual, > 0
     Scalar acceleration;              ///< rad/s², largest usual, low-pass filtered, > 0
+    Scalar standard_deviation = 0;    ///< of a prediction, usual; 0: unknown
 };
 
 /// Deviation of one joint's torque or current from its prediction, and the limit for it.
@@ -35,11 +36,14 @@ struct ContactLimits {
 /// interval, from its value before the contact to its present value. The return of the error is then no
 /// second contact.
 ///
-/// The limit grows in two ways:
+/// The limit grows in three ways:
 /// - A model's error is partly proportional to its prediction. `relative` times the change of the prediction
 ///   within `baseline_s` is added to the limit of the motion, as the root of the sum of squares.
 /// - Where deviations are larger than in training, the limit grows in proportion to their median, at most by
 ///   `most_growth`. Contacts change a median little unless they fill half of the time.
+/// - Where the model knows less than in training, for example in a new posture, the limit grows in proportion
+///   to the prediction's standard deviation, at most by `most_doubt`, with the time constant `baseline_s`.
+///   The median is relative to this.
 template <class Scalar>
 class JointDeviation {
   public:
@@ -54,6 +58,7 @@ class JointDeviation {
     static constexpr Scalar contact_clip = Scalar(0.1); ///< the same during a contact
     static constexpr Scalar median_s = 20;              ///< time constant of the change of a median, s
     static constexpr Scalar most_growth = 4;      ///< largest factor by which a limit grows with its median
+    static constexpr Scalar most_doubt = 4;       ///< same, with the standard deviation of the prediction
     static constexpr Scalar still = Scalar(0.02); ///< rad/s, largest speed of a stationary joint
     /// Speed below which dry friction still rises towards stiction (Stribeck effect), rad/s.
     static constexpr Scalar slow = Scalar(0.08);
@@ -85,6 +90,7 @@ class JointDeviation {
         first_prediction_pole_ = second_prediction_pole_ = earlier_prediction_ = prediction;
         first_pole_ = second_pole_ = low_ = high_ = error;
         deviation_ = share_ = 0;
+        doubt_ = 1;
         direction_ = 0;
         since_change_s_ = change_s;
         motion_ = JointMotion::standing;
@@ -101,6 +107,17 @@ class JointDeviation {
         return std::max(speed() / limits.speed, acceleration() / limits.acceleration);
     }
 
+    /// Updates the factor on the limit for a standard deviation of the prediction (the output's unit). It
+    /// approaches 1 for an unknown one. It is slow, because a push accelerates the joint, which raises the
+    /// standard deviation.
+    void follow_doubt(Scalar standard_deviation, const ContactLimits<Scalar>& limits,
+                      const Steps& steps) noexcept {
+        const Scalar usual = limits.standard_deviation;
+        const Scalar ratio = usual > 0 ? standard_deviation / usual : Scalar(1);
+        const Scalar present = std::max(Scalar(1), std::min(ratio, most_doubt)); // NaN: 1
+        doubt_ += steps.baseline * (present - doubt_);
+    }
+
     /// Updates the deviation and the baseline from an error and a prediction (the output's unit). `range`:
     /// factor on the limit, >= 1. Returns |deviation| / limit, at most `largest_share`.
     Scalar follow(Scalar error, Scalar prediction, const ContactLimits<Scalar>& limits, Scalar range,
@@ -112,7 +129,7 @@ class JointDeviation {
         earlier_prediction_ += steps.baseline * (second_prediction_pole_ - earlier_prediction_);
         classify(steps.dt);
         deviation_ = second_pole_ - std::clamp(second_pole_, low_, high_);
-        const Scalar limit = range * limit_from(limits);
+        const Scalar limit = range * doubt_ * limit_from(limits);
         follow_baseline(limit, contact, steps);
         if (!contact) {
             follow_usual(steps);
@@ -132,6 +149,8 @@ class JointDeviation {
 
     /// Returns the deviation in this tick, in the output's unit.
     [[nodiscard]] Scalar deviation() const noexcept { return deviation_; }
+    /// Returns the factor by which the limit grows with the prediction's standard deviation, >= 1.
+    [[nodiscard]] Scalar doubt() const noexcept { return doubt_; }
     /// Returns |deviation| / limit in this tick.
     [[nodiscard]] Scalar share() const noexcept { return share_; }
     /// Returns the change of the prediction within `baseline_s`, in the output's unit.
@@ -202,7 +221,7 @@ class JointDeviation {
 
     void follow_usual(const Steps& steps) noexcept {
         Scalar& usual = usual_[static_cast<int>(motion_)];
-        usual *= std::abs(deviation_) > usual ? 1 + steps.median : 1 - steps.median;
+        usual *= std::abs(deviation_) > doubt_ * usual ? 1 + steps.median : 1 - steps.median;
         usual = std::clamp(usual, least_usual, largest_usual);
     }
 
@@ -226,6 +245,7 @@ class JointDeviation {
     Scalar first_prediction_pole_, second_prediction_pole_, earlier_prediction_;
     Scalar low_, high_; ///< baseline; equal unless the motion changes
     Scalar deviation_, share_;
+    Scalar doubt_; ///< factor on the limit
     Scalar usual_[joint_motion_count];
     Scalar since_change_s_;
     int direction_; ///< -1, 0, 1

@@ -72,7 +72,7 @@ struct Arm {
     void tick(const double* q, const double* e) {
         constexpr double prediction[2]{0, 0};
         const bool before = detector.contact();
-        const bool begins = detector.tick(time_ns, q, e, prediction) && !before;
+        const bool begins = detector.tick(time_ns, q, e, prediction, prediction) && !before;
         contacts += begins ? 1 : 0;
         contacts_afterwards += begins && calibration.finished() ? 1 : 0;
         second_excess =
@@ -261,7 +261,7 @@ TEST_CASE("an hour at ten kilohertz in float takes an hour", "[contacts]") {
     std::int64_t tick = 0;
     for (; calibration.measuring() && tick < 2 * ticks_per_hour; ++tick) {
         const float q[1]{static_cast<float>(1e-4 * static_cast<double>(tick % 100'000))};
-        detector.tick(tick * 100'000, q, zero, zero);
+        detector.tick(tick * 100'000, q, zero, zero, zero);
         calibration.tick(tick * 100'000, detector);
     }
     CHECK(static_cast<double>(tick) == Approx(ticks_per_hour).epsilon(0.001));

@@ -18,6 +18,7 @@ constexpr double period_s = 0.002;
 constexpr double any = 1e6;
 constexpr dfdyn::ContactLimits<double> limit{{1, 1, 1}, {0.1, 0.1, 0.1}, 0, any, any};
 constexpr dfdyn::ContactLimits<double> limits[2]{limit, limit};
+constexpr double usual[2]{1, 1}; // standard deviation of the predictions
 
 /// Function of the time in seconds.
 using Signal = std::function<double(double)>;
@@ -26,7 +27,8 @@ using Signal = std::function<double(double)>;
 struct Arm {
     Detector detector{{}, limits};
     std::int64_t time_ns = 0;
-    int contacts = 0; ///< that have begun
+    double deviation = 1; ///< standard deviation of the first joint's predictions
+    int contacts = 0;     ///< that have begun
     double first_s = -1, last_s = -1;
 
     double time_s() const { return 1e-9 * static_cast<double>(time_ns); }
@@ -40,8 +42,9 @@ struct Arm {
             const double q[2]{position(time_s()), 0};
             const double e[2]{error(time_s()), 0};
             const double p[2]{prediction(time_s()), 0};
+            const double s[2]{deviation, 1};
             const bool before = detector.contact();
-            const bool now = detector.tick(time_ns, q, e, p);
+            const bool now = detector.tick(time_ns, q, e, p, s);
             contacts += now && !before ? 1 : 0;
             first_s = now && first_s < 0 ? time_s() : first_s;
             last_s = now ? time_s() : last_s;
@@ -90,7 +93,7 @@ TEST_CASE("deviations of several joints add to one contact", "[contacts]") {
         for (int i = 0; i < 1200; ++i) {
             const double q[2]{};
             const double e[2]{i < 1000 ? 0 : first, i < 1000 ? 0 : second};
-            found = detector.tick(i * period_ns, q, e, q) || found;
+            found = detector.tick(i * period_ns, q, e, q, usual) || found;
         }
         return found;
     };
@@ -161,6 +164,15 @@ TEST_CASE("an error in the usual proportion to a change of the prediction is no 
     CHECK(pushed.arm.contacts == 1);
 }
 
+TEST_CASE("an error that the prediction's standard deviation announces is no contact", "[contacts]") {
+    const double deviation = GENERATE(0.5, 1.0);
+    LimitedArm one(0, any);
+    one.limits[0].standard_deviation = 0.5;
+    one.arm.deviation = deviation;
+    one.arm.run(4, moving, push(1.3, 2.5));
+    CHECK(one.arm.contacts == (deviation > 0.5 ? 0 : 1));
+}
+
 TEST_CASE("an error at an acceleration far above those of the training is no contact, later it is one",
           "[contacts]") {
     const auto contacts = [](double usual_acceleration, double at_s) {
@@ -206,10 +218,11 @@ TEST_CASE("stamps that jump from the latest to the earliest one end a contact", 
     const double zero[2]{};
     const double pushed[2]{2, 0};
     for (int i = 1; i <= ticks; ++i) {
-        detector.tick(Stamps::max() - (ticks - i) * period_ns, zero, i <= before ? zero : pushed, zero);
+        detector.tick(Stamps::max() - (ticks - i) * period_ns, zero, i <= before ? zero : pushed, zero,
+                      usual);
     }
     REQUIRE(detector.contact());
-    CHECK_FALSE(detector.tick(Stamps::min(), zero, pushed, zero));
+    CHECK_FALSE(detector.tick(Stamps::min(), zero, pushed, zero, usual));
 }
 
 TEST_CASE("samples inform about an arm in motion and not about one at rest or pushed", "[contacts]") {
@@ -235,7 +248,7 @@ TEST_CASE("a contact is found although every 20th tick has no sample", "[contact
         const std::int64_t time_ns = i * period_ns;
         if (i % 20 == 0) {
             detector.skip(time_ns);
-        } else if (detector.tick(time_ns, zero, i < 1000 ? zero : pushed, zero) && found == 0) {
+        } else if (detector.tick(time_ns, zero, i < 1000 ? zero : pushed, zero, usual) && found == 0) {
             found = i;
         }
     }
@@ -250,7 +263,7 @@ TEST_CASE("a contact stays for a tenth of a second without samples and then ends
     std::int64_t time_ns = 0;
     const auto detect = [&] {
         for (int i = 0; i < 1100; ++i) {
-            detector.tick(time_ns += period_ns, zero, i < 1000 ? zero : pushed, zero);
+            detector.tick(time_ns += period_ns, zero, i < 1000 ? zero : pushed, zero, usual);
         }
         return detector.contact();
     };
@@ -289,7 +302,7 @@ TEST_CASE("samples that are read twice neither hide a push nor end it", "[contac
         if (skipped) {
             arm.detector.skip(arm.time_ns);
         } else {
-            CHECK(arm.detector.tick(arm.time_ns, q, q, q) == arm.detector.contact());
+            CHECK(arm.detector.tick(arm.time_ns, q, q, q, usual) == arm.detector.contact());
         }
     }
     CHECK(arm.contacts == 1);
@@ -302,9 +315,9 @@ TEST_CASE("a stamp that does not advance any more ends a contact", "[contacts]")
     REQUIRE(arm.detector.contact());
     const double q[2]{};
     for (int t = 0; t < Detector::most_repeats; ++t) {
-        CHECK(arm.detector.tick(arm.time_ns, q, q, q));
+        CHECK(arm.detector.tick(arm.time_ns, q, q, q, usual));
     }
-    CHECK_FALSE(arm.detector.tick(arm.time_ns, q, q, q));
+    CHECK_FALSE(arm.detector.tick(arm.time_ns, q, q, q, usual));
     CHECK_FALSE(arm.detector.running());
 }
 
@@ -317,17 +330,17 @@ TEST_CASE("non-finite values and wrong stamps neither cause a contact nor disabl
         arm.run(2, still, still);
         const double q[2]{};
         const double e[2]{bad, 0};
-        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, q, e, q));
-        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, q, q, e));
-        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, e, q, q));
+        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, q, e, q, usual));
+        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, q, q, e, usual));
+        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, e, q, q, usual));
         CHECK_FALSE(arm.detector.running());
         arm.time_ns += 10'000'000'000; // a gap
         const double start_s = arm.time_s();
         arm.run(3, still, [start_s](double t) { return t >= start_s + 1 && t < start_s + 1.5 ? 2.0 : 0.0; });
         CHECK(arm.contacts == 1);
         CHECK(arm.first_s == Approx(start_s + 1.05).margin(0.05));
-        CHECK_FALSE(arm.detector.tick(arm.time_ns, q, q, q));     // the same stamp again
-        CHECK_FALSE(arm.detector.tick(arm.time_ns - 5, q, q, q)); // back
+        CHECK_FALSE(arm.detector.tick(arm.time_ns, q, q, q, usual));     // the same stamp again
+        CHECK_FALSE(arm.detector.tick(arm.time_ns - 5, q, q, q, usual)); // back
     }
 }
 
