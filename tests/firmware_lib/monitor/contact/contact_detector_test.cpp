@@ -2,6 +2,7 @@
 #include "dfdyn/monitor/contact_detector.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
 
 #include <algorithm>
 #include <cmath>
