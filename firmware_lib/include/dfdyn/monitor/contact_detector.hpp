@@ -64,9 +64,10 @@ class ContactDetector {
 
     /// Adds the positions (rad), errors, predictions and the predictions' standard deviations (the outputs'
     /// unit) at a stamp. Returns true during a contact. Values that are not finite, and positions beyond ±
-    /// `largest_position`, interrupt. After a gap, or if the stamp decreases, the comparison starts anew with
-    /// these values, and a contact ends. A sample with the stamp of the last one is ignored, up to
-    /// `most_repeats` in a row: a sensor slower than the loop, or a repeated frame.
+    /// `largest_position`, interrupt; of the standard deviations, a NaN counts as a usual one. After a gap,
+    /// or if the stamp decreases, the comparison starts anew with these values, and a contact ends. A sample
+    /// with the stamp of the last one is ignored, up to `most_repeats` in a row: a sensor slower than the
+    /// loop, or a repeated frame.
     bool tick(std::int64_t time_ns, const Scalar* position, const Scalar* error, const Scalar* prediction,
               const Scalar* standard_deviation) noexcept {
         if (repeats(time_ns)) {
@@ -149,8 +150,6 @@ class ContactDetector {
     [[nodiscard]] Scalar deviation(int joint) const noexcept { return joints_[joint].deviation(); }
     /// Returns the magnitude of a joint's deviation relative to its limit in this tick, >= 0.
     [[nodiscard]] Scalar share(int joint) const noexcept { return joints_[joint].share(); }
-    /// Returns the factor by which a joint's limit grows with its prediction's standard deviation, >= 1.
-    [[nodiscard]] Scalar doubt(int joint) const noexcept { return joints_[joint].doubt(); }
     /// Returns the recent change of a joint's prediction, in the output's unit.
     [[nodiscard]] Scalar predicted_change(int joint) const noexcept {
         return joints_[joint].predicted_change();
