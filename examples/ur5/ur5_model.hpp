@@ -966,11 +966,11 @@ inline constexpr Model::Constants constants{
 
 /// For a dfdyn::ContactDetector, with 0.1 false contacts per hour.
 inline constexpr dfdyn::ContactLimits<float> contact_limits[] = {
-    {.limit = {0.741779F, 1.483558F, 0.82916814F}, .usual = {0.034151226F, 0.12292443F, 0.063207865F}, .relative = 1.1857765F, .speed = 1.1124498F, .acceleration = 2.7856002F},
-    {.limit = {1.3362023F, 1.6939684F, 0.609757F}, .usual = {0.099513836F, 0.17567068F, 0.08689736F}, .relative = 0.18972424F, .speed = 1.1028616F, .acceleration = 1.5278033F},
-    {.limit = {3.5712037F, 0.6208923F, 1.8082377F}, .usual = {0.06290034F, 0.14214921F, 0.05086527F}, .relative = 1.660087F, .speed = 1.1035347F, .acceleration = 1.4943472F},
-    {.limit = {0.36569202F, 0.42906842F, 0.32574478F}, .usual = {0.015485883F, 0.03101691F, 0.031686172F}, .relative = 0.0F, .speed = 0.9417424F, .acceleration = 1.498668F},
-    {.limit = {0.21381707F, 0.42763415F, 0.30079243F}, .usual = {0.011009334F, 0.021140387F, 0.015760528F}, .relative = 1.1857765F, .speed = 1.0506309F, .acceleration = 1.5175962F},
-    {.limit = {1.4343774F, 2.8687549F, 2.2977772F}, .usual = {0.027448736F, 0.123825505F, 0.024874628F}, .relative = 1.660087F, .speed = 1.1178273F, .acceleration = 5.7131567F}};
+    {.limit = {0.741779F, 1.483558F, 0.82916814F}, .usual = 0.063207865F, .relative = 1.1857765F, .speed = 1.1124498F, .acceleration = 2.7856002F},
+    {.limit = {1.3362023F, 1.6939684F, 0.609757F}, .usual = 0.08689736F, .relative = 0.18972424F, .speed = 1.1028616F, .acceleration = 1.5278033F},
+    {.limit = {3.5712037F, 0.6208923F, 1.8082377F}, .usual = 0.05086527F, .relative = 1.660087F, .speed = 1.1035347F, .acceleration = 1.4943472F},
+    {.limit = {0.36569202F, 0.42906842F, 0.32574478F}, .usual = 0.031686172F, .relative = 0.0F, .speed = 0.9417424F, .acceleration = 1.498668F},
+    {.limit = {0.21381707F, 0.42763415F, 0.30079243F}, .usual = 0.015760528F, .relative = 1.1857765F, .speed = 1.0506309F, .acceleration = 1.5175962F},
+    {.limit = {1.4343774F, 2.8687549F, 2.2977772F}, .usual = 0.024874628F, .relative = 1.660087F, .speed = 1.1178273F, .acceleration = 5.7131567F}};
 
 } // namespace ur5_model

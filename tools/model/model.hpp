@@ -62,6 +62,7 @@ struct ContactModel {
     std::vector<double> speed{};              ///< m: largest usual, rad/s
     std::vector<double> acceleration{};       ///< m: largest usual, rad/s²
     std::vector<double> standard_deviation{}; ///< m: of a prediction, median, > 0; empty in older models
+    std::vector<double> hysteresis{};         ///< m: of dry friction, >= 0; empty in older models
     /// Relative decrease of all limits per factor e of the rate of false contacts, from
     /// `contact_rate_per_hour` on. 0: unknown, the model is of an older version.
     double rate_slope = 0;

@@ -166,6 +166,8 @@ TEST_CASE("the limits of contacts read back, also those of older files without a
     model.contact.acceleration.assign(outputs, 8);
     model.contact.rate_slope = 0.125;
     model.contact.standard_deviation.assign(outputs, 0.75);
+    CHECK(model_from_json(model_to_json(model), "m.json").contact.hysteresis.empty());
+    model.contact.hysteresis.assign(outputs, 0.375);
     const ContactModel read = model_from_json(model_to_json(model), "m.json").contact;
     CHECK(read.limit == model.contact.limit);
     CHECK(read.usual == model.contact.usual);
@@ -174,6 +176,7 @@ TEST_CASE("the limits of contacts read back, also those of older files without a
     CHECK(read.acceleration == model.contact.acceleration);
     CHECK(read.rate_slope == model.contact.rate_slope);
     CHECK(read.standard_deviation == model.contact.standard_deviation);
+    CHECK(read.hysteresis == model.contact.hysteresis);
     model.contact.relative[1] = -0.5;
     CHECK(refusal(model_to_json(model)) ==
           "m.json: contact.relative: expected numbers of at least 0, found \"-0.5\"");

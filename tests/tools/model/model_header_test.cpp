@@ -170,13 +170,15 @@ TEST_CASE("the header has the limits of contacts that the program uses, if the m
     model.contact = {.limit = {1, 2, 3, 4, 5, 6.1},
                      .usual = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6},
                      .speed = {0.7, 8},
-                     .standard_deviation = {0.9, 2.5}};
+                     .standard_deviation = {0.9, 2.5},
+                     .hysteresis = {0, 0.35}};
     const std::string header = model_to_header(model, "m");
     for (const dfdyn::ContactLimits<float>& joint : contact_constants(model.contact)) {
-        CHECK(header.find("{.limit = " + array(joint.limit) + ", .usual = " + array(joint.usual) +
+        CHECK(header.find("{.limit = " + array(joint.limit) + ", .usual = " + literal(joint.usual) +
                           ", .relative = " + literal(joint.relative) + ", .speed = " + literal(joint.speed) +
-                          ", .acceleration = " + literal(joint.acceleration) + ", .standard_deviation = " +
-                          literal(joint.standard_deviation) + "}") != std::string::npos);
+                          ", .acceleration = " + literal(joint.acceleration) +
+                          ", .standard_deviation = " + literal(joint.standard_deviation) +
+                          ", .hysteresis = " + literal(joint.hysteresis) + "}") != std::string::npos);
     }
 }
 

@@ -54,6 +54,9 @@ ordered_json contact_to_json(const ContactModel& contact) {
     if (!contact.standard_deviation.empty()) { // absent from older files
         json["standard_deviation"] = singles(contact.standard_deviation);
     }
+    if (!contact.hysteresis.empty()) { // absent from older files
+        json["hysteresis"] = singles(contact.hysteresis);
+    }
     return json;
 }
 
@@ -199,6 +202,10 @@ ContactModel read_contact(const JsonReader& reader, int outputs) {
     }
     if (reader.has("standard_deviation")) { // absent from older files
         contact.standard_deviation = reader.positive_numbers("standard_deviation", outputs);
+    }
+    if (reader.has("hysteresis")) { // absent from older files
+        contact.hysteresis = reader.numbers("hysteresis", outputs);
+        check_not_negative(reader, "hysteresis", contact.hysteresis);
     }
     return contact;
 }

@@ -276,10 +276,11 @@ std::string contact_text(const ContactModel& contact) {
                        "inline constexpr dfdyn::ContactLimits<float> contact_limits[] = {";
     const char* separator = "\n";
     for (const ContactLimits<float>& joint : joints) {
-        text += separator + ("    {.limit = " + array(joint.limit)) + ", .usual = " + array(joint.usual) +
+        text += separator + ("    {.limit = " + array(joint.limit)) + ", .usual = " + literal(joint.usual) +
                 ", .relative = " + literal(joint.relative) + ", .speed = " + literal(joint.speed) +
                 ", .acceleration = " + literal(joint.acceleration) +
-                ", .standard_deviation = " + literal(joint.standard_deviation) + "}";
+                ", .standard_deviation = " + literal(joint.standard_deviation) +
+                ", .hysteresis = " + literal(joint.hysteresis) + "}";
         separator = ",\n";
     }
     return text + "};\n\n";

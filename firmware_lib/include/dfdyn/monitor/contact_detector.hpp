@@ -39,7 +39,7 @@ namespace dfdyn {
 /// Do not use `Estimate::innovation`: it is 0 for an output beyond the model's limit, as in the hardest
 /// collisions. After an interruption during a contact, the push that remains becomes the baseline. Positions,
 /// errors, predictions and standard deviations have `joints` values in the same order; joints count from 0.
-/// No heap. Cost: `cost` per joint and tick, and four exponentials. Memory: 20 numbers per joint.
+/// No heap. Cost: `cost` per joint and tick, and five exponentials. Memory: 27 numbers per joint.
 template <class Scalar, int joints>
 class ContactDetector {
   public:
@@ -52,7 +52,7 @@ class ContactDetector {
     static constexpr Scalar settling_s = Scalar(0.5);    ///< after an interruption without contacts, s
     static constexpr Scalar most_range = 20; ///< an encoder's jump then masks contacts for a second only
     static constexpr Scalar largest_position = 10'000; ///< rad; a larger one is no position
-    static constexpr int cost = 40;                    ///< maximum multiply-adds of `tick` per joint
+    static constexpr int cost = 50;                    ///< maximum multiply-adds of `tick` per joint
 
     /// `limits`: one per joint; kept by reference.
     ContactDetector(Extent<joints> count, const ContactLimits<Scalar>* limits) noexcept
@@ -162,6 +162,10 @@ class ContactDetector {
     [[nodiscard]] Scalar excess() const noexcept { return excess_; }
     /// Returns the motion of a joint in this tick, `joint` from 0.
     [[nodiscard]] JointMotion motion(int joint) const noexcept { return joints_[joint].motion(); }
+    /// Returns the range of a joint's error that hysteresis explains, in units of its friction.
+    [[nodiscard]] const FrictionHysteresis<Scalar>& hysteresis(int joint) const noexcept {
+        return joints_[joint].hysteresis();
+    }
 
   private:
     using Joint = JointDeviation<Scalar>;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/core/strict_math.hpp"
+#include "dfdyn/monitor/friction_hysteresis.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,16 +15,17 @@ namespace dfdyn {
 enum class JointMotion : std::uint8_t { standing, changing, moving };
 inline constexpr int joint_motion_count = 3;
 
-/// Properties of one joint's deviation (see JointDeviation) without contact, for each JointMotion, in the
-/// output's unit. `dfdyn train` measures them.
+/// Properties of one joint's deviation (see JointDeviation) without contact, in the output's unit. `dfdyn
+/// train` measures them.
 template <class Scalar>
 struct ContactLimits {
-    Scalar limit[joint_motion_count]; ///< smallest deviation of a contact at this joint alone, > 0
-    Scalar usual[joint_motion_count]; ///< median of the magnitude, >= 0
+    Scalar limit[joint_motion_count]; ///< in each motion, smallest deviation of a contact at this joint alone
+    Scalar usual;                     ///< median of the magnitude while the joint moves, >= 0
     Scalar relative;                  ///< added limit per recent change of the prediction, >= 0
     Scalar speed;                     ///< rad/s, largest usual, > 0
     Scalar acceleration;              ///< rad/s², largest usual, low-pass filtered, > 0
     Scalar standard_deviation = 0;    ///< of a prediction, usual; 0: unknown
+    Scalar hysteresis = 0;            ///< dry friction in which FrictionHysteresis is measured, >= 0
 };
 
 /// Deviation of one joint's torque or current from its prediction, and the limit for it.
@@ -34,13 +36,14 @@ struct ContactLimits {
 /// For `change_s` after that, the baseline is an interval: from its last value to zero, the error of an
 /// accurate model in motion. The baseline follows at most `clip` limits. During a contact it is also an
 /// interval, from its value before the contact to its present value. The return of the error is then no
-/// second contact.
+/// second contact. `hysteresis` times the range of FrictionHysteresis is added to the interval.
 ///
 /// The limit grows in three ways:
 /// - A model's error is partly proportional to its prediction. `relative` times the change of the prediction
 ///   within `baseline_s` is added to the limit of the motion, as the root of the sum of squares.
-/// - Where deviations are larger than in training, the limit grows in proportion to their median, at most by
-///   `most_growth`. Contacts change a median little unless they fill half of the time.
+/// - Where deviations are larger than in training, the limit grows in proportion to their median while the
+///   joint moves, at most by `most_growth`. Contacts change a median little unless they fill half of the
+///   time. Elsewhere a median varies too much from posture to posture.
 /// - Where the model knows less than in training, for example in a new posture, the limit grows in proportion
 ///   to the prediction's standard deviation, at most by `most_doubt`, with the time constant `baseline_s`.
 ///   The median is relative to this.
@@ -69,27 +72,28 @@ class JointDeviation {
         explicit Steps(Scalar period_s) noexcept
             : dt(period_s), filter(1 - std::exp(-dt / filter_s)),
               velocity(1 - std::exp(-dt / velocity_filter_s)), baseline(1 - std::exp(-dt / baseline_s)),
-              range(1 - std::exp(-dt / range_s)), median(dt / median_s) {}
+              range(1 - std::exp(-dt / range_s)), median(dt / median_s),
+              lag(1 - std::exp(-dt / FrictionHysteresis<Scalar>::lag_s)) {}
         Scalar dt;       ///< s
         Scalar filter;   ///< of the error, the prediction and the acceleration
         Scalar velocity; ///< of the velocity
         Scalar baseline; ///< of the baseline
         Scalar range;    ///< of the growth beyond the training
         Scalar median;   ///< relative change of a median
+        Scalar lag;      ///< of the velocity in FrictionHysteresis
     };
 
-    /// Sets the medians to those of the training.
-    void reset(const ContactLimits<Scalar>& limits) noexcept {
-        std::copy_n(limits.usual, joint_motion_count, usual_);
-    }
+    /// Sets the median to that of the training.
+    void reset(const ContactLimits<Scalar>& limits) noexcept { usual_ = limits.usual; }
 
-    /// Starts at a position (rad) with an error and a prediction (the output's unit). Keeps the medians.
+    /// Starts at a position (rad) with an error and a prediction (the output's unit). Keeps the median.
     void begin(Scalar position, Scalar error, Scalar prediction) noexcept {
         position_ = position;
         velocity_ = earlier_velocity_ = acceleration_ = 0;
         first_prediction_pole_ = second_prediction_pole_ = earlier_prediction_ = prediction;
         first_pole_ = second_pole_ = low_ = high_ = error;
-        deviation_ = share_ = 0;
+        hysteresis_.begin();
+        deviation_ = share_ = explained_low_ = explained_high_ = 0;
         doubt_ = 1;
         direction_ = 0;
         since_change_s_ = change_s;
@@ -99,7 +103,10 @@ class JointDeviation {
     /// Updates the motion from a position (rad). Returns the larger of speed and acceleration, each relative
     /// to its largest usual value.
     Scalar follow_motion(Scalar position, const ContactLimits<Scalar>& limits, const Steps& steps) noexcept {
-        velocity_ += steps.velocity * ((position - position_) / steps.dt - velocity_);
+        const Scalar displacement = position - position_;
+        velocity_ += steps.velocity * (displacement / steps.dt - velocity_);
+        hysteresis_.follow(displacement, std::clamp(velocity_ / slow, Scalar(-1), Scalar(1)), steps.lag,
+                           steps.filter);
         position_ = position;
         earlier_velocity_ += steps.filter * (velocity_ - earlier_velocity_);
         const Scalar present = (velocity_ - earlier_velocity_) / filter_s;
@@ -128,10 +135,12 @@ class JointDeviation {
         second_prediction_pole_ += steps.filter * (first_prediction_pole_ - second_prediction_pole_);
         earlier_prediction_ += steps.baseline * (second_prediction_pole_ - earlier_prediction_);
         classify(steps.dt);
-        deviation_ = second_pole_ - std::clamp(second_pole_, low_, high_);
+        explained_low_ = limits.hysteresis * hysteresis_.low();
+        explained_high_ = limits.hysteresis * hysteresis_.high();
+        deviation_ = second_pole_ - std::clamp(second_pole_, low_ + explained_low_, high_ + explained_high_);
         const Scalar limit = range * doubt_ * limit_from(limits);
         follow_baseline(limit, contact, steps);
-        if (!contact) {
+        if (!contact && motion_ == JointMotion::moving) {
             follow_usual(steps);
         }
         share_ = std::min(std::abs(deviation_) / limit, largest_share);
@@ -163,6 +172,8 @@ class JointDeviation {
     [[nodiscard]] Scalar acceleration() const noexcept { return std::abs(acceleration_); }
     /// Returns the motion in this tick.
     [[nodiscard]] JointMotion motion() const noexcept { return motion_; }
+    /// Returns the range of the error that hysteresis explains, in units of the friction.
+    [[nodiscard]] const FrictionHysteresis<Scalar>& hysteresis() const noexcept { return hysteresis_; }
 
   private:
     void classify(Scalar dt) noexcept {
@@ -205,8 +216,8 @@ class JointDeviation {
     /// Moves the baseline towards the error: the edge that it exceeds by `step`, the other edge by `share` of
     /// its distance.
     void approach(Scalar step, Scalar share) noexcept {
-        const Scalar low = low_ + share * (second_pole_ - low_);
-        const Scalar high = high_ + share * (second_pole_ - high_);
+        const Scalar low = low_ + share * (unexplained_from(low_) - low_);
+        const Scalar high = high_ + share * (unexplained_from(high_) - high_);
         if (step > 0) {
             high_ += step;
             low_ = std::min(low, high_);
@@ -219,17 +230,20 @@ class JointDeviation {
         }
     }
 
+    /// Returns the error closest to `edge` that hysteresis does not explain.
+    [[nodiscard]] Scalar unexplained_from(Scalar edge) const noexcept {
+        return std::clamp(edge, second_pole_ - explained_high_, second_pole_ - explained_low_);
+    }
+
     void follow_usual(const Steps& steps) noexcept {
-        Scalar& usual = usual_[static_cast<int>(motion_)];
-        usual *= std::abs(deviation_) > doubt_ * usual ? 1 + steps.median : 1 - steps.median;
-        usual = std::clamp(usual, least_usual, largest_usual);
+        usual_ *= std::abs(deviation_) > doubt_ * usual_ ? 1 + steps.median : 1 - steps.median;
+        usual_ = std::clamp(usual_, least_usual, largest_usual);
     }
 
     [[nodiscard]] Scalar limit_from(const ContactLimits<Scalar>& limits) const noexcept {
-        const int motion = static_cast<int>(motion_);
-        const Scalar trained = limits.usual[motion];
-        const Scalar growth = trained > 0 ? usual_[motion] / trained : Scalar(1);
-        const Scalar constant = limits.limit[motion] * std::clamp(growth, Scalar(1), most_growth);
+        const Scalar growth = limits.usual > 0 ? usual_ / limits.usual : Scalar(1);
+        const Scalar constant =
+            limits.limit[static_cast<int>(motion_)] * std::clamp(growth, Scalar(1), most_growth);
         const Scalar proportional = limits.relative * predicted_change();
         return std::sqrt(constant * constant + proportional * proportional);
     }
@@ -243,10 +257,12 @@ class JointDeviation {
     Scalar acceleration_;             ///< rad/s²
     Scalar first_pole_, second_pole_; ///< of the error
     Scalar first_prediction_pole_, second_prediction_pole_, earlier_prediction_;
-    Scalar low_, high_; ///< baseline; equal unless the motion changes
+    FrictionHysteresis<Scalar> hysteresis_;
+    Scalar explained_low_, explained_high_; ///< errors that hysteresis explains
+    Scalar low_, high_;                     ///< baseline; equal unless the motion changes
     Scalar deviation_, share_;
     Scalar doubt_; ///< factor on the limit
-    Scalar usual_[joint_motion_count];
+    Scalar usual_; ///< median of the deviation's magnitude while the joint moves
     Scalar since_change_s_;
     int direction_; ///< -1, 0, 1
     JointMotion motion_;

@@ -21,8 +21,8 @@ using dfdyn::JointMotion;
 constexpr std::int64_t period_ns = 4'000'000;
 constexpr std::int64_t settled_ns = 504'000'000; ///< stamp from which the detector counts
 constexpr double any = 1e6;
-constexpr dfdyn::ContactLimits<double> trained[2]{{{1, 1, 1}, {0.3, 0.3, 0.3}, 0.1, any, any},
-                                                  {{2, 2, 2}, {0.3, 0.3, 0.3}, 0, any, any}};
+constexpr dfdyn::ContactLimits<double> trained[2]{{{1, 1, 1}, 0.3, 0.1, any, any},
+                                                  {{2, 2, 2}, 0.3, 0, any, any}};
 
 /// Function of the time in seconds.
 using Signal = std::function<double(double)>;
@@ -253,7 +253,7 @@ TEST_CASE("interruptions and stamps out of order leave the measured limits finit
 
 TEST_CASE("an hour at ten kilohertz in float takes an hour", "[contacts]") {
     using Fast = dfdyn::ContactCalibration<float, 1>;
-    constexpr dfdyn::ContactLimits<float> limits[1]{{{1, 1, 1}, {0.3F, 0.3F, 0.3F}, 0, 1e6F, 1e6F}};
+    constexpr dfdyn::ContactLimits<float> limits[1]{{{1, 1, 1}, 0.3F, 0, 1e6F, 1e6F}};
     Fast calibration({}, limits, 3600, 1);
     Fast::Detector detector({}, calibration.limits());
     constexpr std::int64_t ticks_per_hour = 36'000'000;

@@ -17,7 +17,7 @@ using Detector = dfdyn::ContactDetector<double, 2>;
 constexpr std::int64_t period_ns = 2'000'000;
 constexpr double period_s = 0.002;
 constexpr double any = 1e6;
-constexpr dfdyn::ContactLimits<double> limit{{1, 1, 1}, {0.1, 0.1, 0.1}, 0, any, any};
+constexpr dfdyn::ContactLimits<double> limit{{1, 1, 1}, 0.1, 0, any, any};
 constexpr dfdyn::ContactLimits<double> limits[2]{limit, limit};
 constexpr double usual[2]{1, 1}; // standard deviation of the predictions
 
@@ -146,7 +146,7 @@ struct LimitedArm {
     Arm arm;
 
     LimitedArm(double relative, double acceleration)
-        : limits{{{1, 1, 1}, {0.1, 0.1, 0.1}, relative, any, acceleration}, limit}, arm{{{}, limits}} {}
+        : limits{{{1, 1, 1}, 0.1, relative, any, acceleration}, limit}, arm{{{}, limits}} {}
 };
 
 TEST_CASE("an error in the usual proportion to a change of the prediction is no contact", "[contacts]") {
