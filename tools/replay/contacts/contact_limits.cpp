@@ -35,7 +35,7 @@ std::vector<double> usual_deviations(std::span<const PredictedRow> rows, std::si
     for (std::size_t k = 0; k < joints; ++k) {
         std::vector<double> values;
         for (const PredictedRow& row : rows) {
-            if (row.pass == block_count) {
+            if (row.pass == held_out_blocks) {
                 values.push_back(row.standard_deviation[k]);
             }
         }
@@ -69,7 +69,7 @@ struct ExcessPeaks {
     double covered_s = 0; ///< duration of all intervals
 };
 
-using PassPeaks = std::array<ExcessPeaks, block_count + 1>;
+using PassPeaks = std::array<ExcessPeaks, held_out_blocks + 1>;
 
 /// Returns the largest excess of each second, in each pass.
 PassPeaks excess_peaks(std::span<const PredictedRow> rows, const ContactModel& contact, double period_s) {

@@ -54,18 +54,18 @@ auto in_motion(int motion) {
     return [motion](const Deviation& one) { return one.motion == motion; };
 }
 
-using Passes = std::array<bool, block_count + 1>;
+using Passes = std::array<bool, held_out_blocks + 1>;
 
 /// Returns which passes have a median deviation of at most `most_median` times the trained model's. Some
 /// held-out blocks have a motion that the others do not determine: their errors are not typical of the model.
 Passes determined_passes(const Deviations& deviations) {
-    std::array<std::vector<double>, block_count + 1> sizes;
+    std::array<std::vector<double>, held_out_blocks + 1> sizes;
     for (const Deviation& one : deviations) {
         sizes[one.pass].push_back(one.size);
     }
     Passes determined{};
     const double trained = sizes.back().empty() ? 0 : median(sizes.back());
-    for (std::size_t pass = 0; pass <= block_count; ++pass) {
+    for (std::size_t pass = 0; pass <= held_out_blocks; ++pass) {
         determined[pass] = !sizes[pass].empty() && median(sizes[pass]) <= most_median * trained;
     }
     return determined;

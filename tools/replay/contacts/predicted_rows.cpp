@@ -38,15 +38,15 @@ void learn_rows_of(RuntimeEstimator& estimator, std::span<const Recording> recor
 std::vector<PredictedRow> calibration_rows(const TrainedModel& model, std::span<const Recording> recordings) {
     const std::size_t rows = total_rows(recordings);
     std::vector<PredictedRow> predicted;
-    for (std::size_t block = 0; block < block_count; ++block) {
-        const std::size_t first = rows * block / block_count;
-        const std::size_t last = rows * (block + 1) / block_count;
+    for (std::size_t block = 0; block < held_out_blocks; ++block) {
+        const std::size_t first = rows * block / held_out_blocks;
+        const std::size_t last = rows * (block + 1) / held_out_blocks;
         const auto estimator = make_estimator(model, true);
         learn_rows_of(*estimator, recordings, 0, first);
         learn_rows_of(*estimator, recordings, last, rows);
         predict_rows(*estimator, recordings, first, last, block, predicted);
     }
-    predict_rows(*make_estimator(model, false), recordings, 0, rows, block_count, predicted);
+    predict_rows(*make_estimator(model, false), recordings, 0, rows, held_out_blocks, predicted);
     return predicted;
 }
 

@@ -12,10 +12,10 @@
 
 namespace dfdyn::tools {
 
-/// Number of blocks of time that are held out in turn. The last pass of all is the trained model's.
-inline constexpr std::size_t block_count = 8;
+/// Number of blocks of time, each predicted by the others. The last pass of all is the trained model's.
+inline constexpr std::size_t held_out_blocks = 8;
 
-/// A row with the error of its prediction. `pass`: number of the held-out block, or `block_count`.
+/// A row with the error of its prediction. `pass`: number of the held-out block, or `held_out_blocks`.
 struct PredictedRow {
     std::size_t pass = 0;
     std::int64_t time_ns = 0;
@@ -24,7 +24,7 @@ struct PredictedRow {
 };
 
 /// Predicts each block of time by a frozen estimator that has learned all others from the prior, and then all
-/// rows by the frozen model. Cost: `block_count` + 1 ticks per row.
+/// rows by the frozen model. Cost: `held_out_blocks` + 1 ticks per row.
 std::vector<PredictedRow> calibration_rows(const TrainedModel& model, std::span<const Recording> recordings);
 
 /// Runs a detector over the rows; calls `use(row, detector)` after each.

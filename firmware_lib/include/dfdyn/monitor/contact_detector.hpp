@@ -39,7 +39,7 @@ namespace dfdyn {
 /// Do not use `Estimate::innovation`: it is 0 for an output beyond the model's limit, as in the hardest
 /// collisions. After an interruption during a contact, the push that remains becomes the baseline. Positions,
 /// errors, predictions and standard deviations have `joints` values in the same order; joints count from 0.
-/// No heap. Cost: `cost` per joint and tick, and five exponentials. Memory: 27 numbers per joint.
+/// No heap. Cost: `cost` per joint and tick, and five exponentials. Memory: 25 numbers per joint.
 template <class Scalar, int joints>
 class ContactDetector {
   public:

@@ -25,7 +25,7 @@ class FrictionHysteresis {
     void begin() noexcept { *this = {}; }
 
     /// Updates the range. `displacement`: rad, since the last tick. `direction`: of the velocity, from -1 to
-    /// 1; its share of 1 is that of the friction which a model predicts. `lag` and `filter`: shares of the
+    /// 1, where a model predicts the whole friction. `lag` and `filter`: shares of the
     /// present values in the filters of the velocity and of the range.
     void follow(Scalar displacement, Scalar direction, Scalar lag, Scalar filter) noexcept {
         friction_ = std::clamp(friction_ + displacement / presliding, Scalar(-1), Scalar(1));

@@ -93,7 +93,7 @@ class JointDeviation {
         first_prediction_pole_ = second_prediction_pole_ = earlier_prediction_ = prediction;
         first_pole_ = second_pole_ = low_ = high_ = error;
         hysteresis_.begin();
-        deviation_ = share_ = explained_low_ = explained_high_ = 0;
+        deviation_ = share_ = 0;
         doubt_ = 1;
         direction_ = 0;
         since_change_s_ = change_s;
@@ -135,11 +135,11 @@ class JointDeviation {
         second_prediction_pole_ += steps.filter * (first_prediction_pole_ - second_prediction_pole_);
         earlier_prediction_ += steps.baseline * (second_prediction_pole_ - earlier_prediction_);
         classify(steps.dt);
-        explained_low_ = limits.hysteresis * hysteresis_.low();
-        explained_high_ = limits.hysteresis * hysteresis_.high();
-        deviation_ = second_pole_ - std::clamp(second_pole_, low_ + explained_low_, high_ + explained_high_);
+        const Scalar friction = limits.hysteresis;
+        deviation_ = second_pole_ - std::clamp(second_pole_, low_ + friction * hysteresis_.low(),
+                                               high_ + friction * hysteresis_.high());
         const Scalar limit = range * doubt_ * limit_from(limits);
-        follow_baseline(limit, contact, steps);
+        follow_baseline(limit, friction, contact, steps);
         if (!contact && motion_ == JointMotion::moving) {
             follow_usual(steps);
         }
@@ -202,22 +202,22 @@ class JointDeviation {
         return velocity_ * (deceleration * stop_s - velocity_) > 0;
     }
 
-    void follow_baseline(Scalar limit, bool contact, const Steps& steps) noexcept {
+    void follow_baseline(Scalar limit, Scalar friction, bool contact, const Steps& steps) noexcept {
         const Scalar most = (contact ? contact_clip : clip) * limit;
         const Scalar step = steps.baseline * std::clamp(deviation_, -most, most);
         if (changed() || contact) {
             low_ += std::min(step, Scalar(0));
             high_ += std::max(step, Scalar(0));
         } else {
-            approach(step, steps.baseline);
+            approach(step, friction, steps.baseline);
         }
     }
 
     /// Moves the baseline towards the error: the edge that it exceeds by `step`, the other edge by `share` of
     /// its distance.
-    void approach(Scalar step, Scalar share) noexcept {
-        const Scalar low = low_ + share * (unexplained_from(low_) - low_);
-        const Scalar high = high_ + share * (unexplained_from(high_) - high_);
+    void approach(Scalar step, Scalar friction, Scalar share) noexcept {
+        const Scalar low = low_ + share * (unexplained_from(low_, friction) - low_);
+        const Scalar high = high_ + share * (unexplained_from(high_, friction) - high_);
         if (step > 0) {
             high_ += step;
             low_ = std::min(low, high_);
@@ -230,9 +230,10 @@ class JointDeviation {
         }
     }
 
-    /// Returns the error closest to `edge` that hysteresis does not explain.
-    [[nodiscard]] Scalar unexplained_from(Scalar edge) const noexcept {
-        return std::clamp(edge, second_pole_ - explained_high_, second_pole_ - explained_low_);
+    /// Returns the value closest to `edge` from which hysteresis of this friction explains the error.
+    [[nodiscard]] Scalar unexplained_from(Scalar edge, Scalar friction) const noexcept {
+        return std::clamp(edge, second_pole_ - friction * hysteresis_.high(),
+                          second_pole_ - friction * hysteresis_.low());
     }
 
     void follow_usual(const Steps& steps) noexcept {
@@ -258,8 +259,7 @@ class JointDeviation {
     Scalar first_pole_, second_pole_; ///< of the error
     Scalar first_prediction_pole_, second_prediction_pole_, earlier_prediction_;
     FrictionHysteresis<Scalar> hysteresis_;
-    Scalar explained_low_, explained_high_; ///< errors that hysteresis explains
-    Scalar low_, high_;                     ///< baseline; equal unless the motion changes
+    Scalar low_, high_; ///< baseline; equal unless the motion changes
     Scalar deviation_, share_;
     Scalar doubt_; ///< factor on the limit
     Scalar usual_; ///< median of the deviation's magnitude while the joint moves
