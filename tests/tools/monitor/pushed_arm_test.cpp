@@ -106,62 +106,81 @@ std::vector<double> contact_starts(const TrainedModel& model, bool learning, con
     return starts;
 }
 
-/// A push on the difference of joint 2's current, mean over 0.2 s, to the undisturbed run of the same
-/// commands.
-struct Push {
-    double onset_s = 0; ///< it exceeds half of `shown`, and remains above until it is shown
-    double shown_s = 0; ///< it exceeds 1 A
+/// Two runs of the same commands, the second with a person who pushes.
+struct PairedRuns {
+    std::string undisturbed, pushed;
+    std::size_t joint;          ///< index of the joint whose current shows the pushes
+    std::size_t later_rows = 0; ///< by which the undisturbed run is later
 };
 
-std::vector<Push> pushes_of(const std::string& undisturbed, const std::string& pushed) {
-    const Recording without = recording(undisturbed);
-    const Recording with = recording(pushed);
+/// A push on the difference of the paired currents, mean over 0.2 s.
+struct Push {
+    double onset_s = 0; ///< the difference exceeds half of `shown`, and remains above until it is shown
+    double shown_s = 0; ///< it exceeds 1 A
+    double end_s = 0;   ///< it is no longer above half of `shown`
+};
+
+struct PairedPushes {
+    std::vector<Push> pushes;
+    double end_s = 0; ///< time at which one of the runs has ended
+};
+
+PairedPushes pushes_of(const PairedRuns& runs) {
+    const Recording without = recording(runs.undisturbed);
+    const Recording with = recording(runs.pushed);
     constexpr std::size_t half = 12;
     constexpr double shown = 1; // A
-    constexpr double apart_s = 0.5;
-    std::vector<Push> pushes;
+    PairedPushes found;
     double onset_s = 0;
-    double last_s = -1;
-    const std::size_t rows = std::min(without.row_count(), with.row_count());
+    bool pushed = false;
+    const std::size_t rows = std::min(without.row_count() - runs.later_rows, with.row_count());
     for (std::size_t row = half; row + half < rows; ++row) {
         double sum = 0;
         for (std::size_t i = row - half; i <= row + half; ++i) {
-            sum += with.output.row(i)[1] - without.output.row(i)[1];
+            sum += with.output.row(i)[runs.joint] - without.output.row(i + runs.later_rows)[runs.joint];
         }
         const double size = std::abs(sum) / (2 * half + 1);
-        onset_s = size > shown / 2 ? onset_s : with.time_s[row];
-        if (size > shown) {
-            if (last_s < 0 || with.time_s[row] - last_s > apart_s) {
-                pushes.push_back({onset_s, with.time_s[row]});
-            }
-            last_s = with.time_s[row];
+        found.end_s = with.time_s[row];
+        if (size > shown && !pushed) {
+            found.pushes.push_back({onset_s, found.end_s});
+            pushed = true;
+        }
+        if (pushed) {
+            found.pushes.back().end_s = found.end_s;
+        }
+        if (size <= shown / 2) {
+            onset_s = found.end_s;
+            pushed = false;
         }
     }
-    return pushes;
+    return found;
 }
 
 /// Returns the numbers of the pushes without a contact from 0.1 s before their onset to 0.1 s after they are
-/// shown. Every contact must belong to a push.
-std::vector<std::size_t> missed_pushes(const std::vector<Push>& pushes, const std::vector<double>& contacts) {
+/// shown. Every contact while both runs last must begin during a push.
+std::vector<std::size_t> missed_pushes(const PairedPushes& paired, std::vector<double> contacts) {
+    std::erase_if(contacts, [&](double start) { return start > paired.end_s; });
     CAPTURE(contacts);
+    const auto begins_between = [&](double first, double last) {
+        return std::ranges::count_if(contacts, [=](double start) { return start >= first && start <= last; });
+    };
     std::vector<std::size_t> missed;
-    for (std::size_t i = 0; i < pushes.size(); ++i) {
-        const Push& push = pushes[i];
-        if (std::ranges::none_of(contacts, [&](double start) {
-                return start >= push.onset_s - 0.1 && start <= push.shown_s + 0.1;
-            })) {
+    std::ptrdiff_t during_pushes = 0;
+    for (std::size_t i = 0; i < paired.pushes.size(); ++i) {
+        const Push& push = paired.pushes[i];
+        during_pushes += begins_between(push.onset_s - 0.1, push.end_s + 0.1);
+        if (begins_between(push.onset_s - 0.1, push.shown_s + 0.1) == 0) {
             missed.push_back(i);
         }
     }
-    CHECK(contacts.size() + missed.size() == pushes.size());
+    CHECK(during_pushes == std::ssize(contacts));
     return missed;
 }
 
 } // namespace
 
-TEST_CASE(
-    "nine of ten pushes of a person on a real arm are detected within a tenth of a second, nothing else",
-    "[contacts]") {
+TEST_CASE("most pushes of a person on a real arm are detected within a tenth of a second, nothing else",
+          "[contacts]") {
     const Robot robot = ur5();
     const Recording first = recording("No6_Acc_slow_Verify_Model");
     const std::vector<std::string> friction{"viscous_friction", "coulomb_friction", "torque_offset"};
@@ -182,15 +201,20 @@ TEST_CASE(
                 CAPTURE(name);
                 CHECK(contact_starts(model, learning, name).empty());
             }
-            const auto missed = [&](const std::string& undisturbed, const std::string& pushed) {
-                const std::vector<Push> pushes = pushes_of(undisturbed, pushed);
-                REQUIRE(pushes.size() == 5);
-                return missed_pushes(pushes, contact_starts(model, learning, pushed));
+            const auto missed = [&](const PairedRuns& runs, std::size_t count) {
+                const PairedPushes paired = pushes_of(runs);
+                REQUIRE(paired.pushes.size() == count);
+                return missed_pushes(paired, contact_starts(model, learning, runs.pushed));
             };
-            const std::vector<std::size_t> in_first =
-                missed("No7_Acc_slow_Verify_Model_short", "No7_Acc_slow_Verify_Model_short_with_disturbance");
+            const std::vector<std::size_t> in_first = missed(
+                {"No7_Acc_slow_Verify_Model_short", "No7_Acc_slow_Verify_Model_short_with_disturbance", 1},
+                5);
             CHECK((in_first.empty() || in_first == std::vector<std::size_t>{4}));
-            CHECK(missed("No9_Singularity_Free_NoDist", "No9_Singularity_Free_WDist").empty());
+            CHECK(missed({"No9_Singularity_Free_NoDist", "No9_Singularity_Free_WDist", 1}, 5).empty());
+            // Limits are wide for 0.7 s after a reversal; there the third and the fourth push begin.
+            const std::size_t most_missed = recipe.motion == PhysicsMotion::of_input ? 4 : learning ? 1 : 3;
+            CHECK(missed({"No5_Acc_slow_no_disturbance", "No5_Acc_slow_w_disturbance", 0, 12}, 7).size() <=
+                  most_missed);
         }
     }
 }
